@@ -149,7 +149,7 @@ class Piecewise(NamedTuple):
     def at_rest(self) -> NDArray[np.bool_]:
         """On which pieces it is zero throughout."""
         still = (self.slope == 0.0) & (self.curvature() == 0.0)
-        return still & (np.abs(self.middle) <= _ROUNDING * self.size())
+        return still & (np.abs(self.middle) <= _ROUNDING * self.size()) if still.any() else still
 
     def crossings(self) -> Crossings:
         """Where it crosses zero: intervals that cannot hold a zero are dropped, the others cut in two."""

@@ -12,7 +12,10 @@ from frictionlab.methods.march.error import WORK, MarchMean, crossing, steps_nee
 from frictionlab.methods.march.laps import CLOSED, STALLED, TOO_FAST, MarchState
 from frictionlab.methods.march.run import MarchResult, MarchRun
 from frictionlab.methods.shooting.attractors import starts
+from frictionlab.methods.shooting.long_mean import LongMean, alike, long_mean
 
+AVERAGED = 512
+"""Laps over which a motion that never repeats is averaged."""
 NOISE = 1e-3
 """Spread of the means of a motion that does not repeat, over friction at rest, that passes for noise of the steps."""
 SHUT = 1e-7
@@ -23,7 +26,8 @@ SHUT = 1e-7
 class Arrival:
     """Where a start led: a motion that repeats after some laps (0: never), and its means over one of them.
 
-    low, high: the smallest and the largest mean over one lap. followed: for how many laps.
+    low, high: the smallest and the largest mean over one lap. followed: for how many laps. average: the mean over
+    all of them, of a motion that never repeats.
     """
 
     period: int
@@ -31,6 +35,7 @@ class Arrival:
     low: float
     high: float
     followed: int
+    average: LongMean | None = None
 
 
 @dataclass(frozen=True)
@@ -77,14 +82,15 @@ class OtherStarts:
         noise = 2.0 * self._steps if self.first.period > 0 else 0.0
         if run.verdict == STALLED:
             noise = max(noise, NOISE * self.march.at_rest)
-            noise = max(noise, 2.0 * (like.high - like.low) if like.verdict == STALLED else 0.0)
+            beside = like.verdict == STALLED and self.first.period > 0
+            noise = max(noise, 2.0 * (like.high - like.low) if beside else 0.0)
         if spread <= noise or (run.verdict == CLOSED and run.stride == 1):
             return Arrival(1, mean, mean, mean, run.laps)
         if run.verdict == STALLED:
-            return Arrival(0, math.nan, run.low, run.high, run.laps)
+            return unrepeated_arrival(self.march, run)
         # repeats as the first does, or as its steps do
-        alike = (run.verdict, run.stride) == (like.verdict, like.stride)
-        return Arrival(self.first.period if alike else run.stride, mean, run.low, run.high, run.laps)
+        same = (run.verdict, run.stride) == (like.verdict, like.stride)
+        return Arrival(self.first.period if same else run.stride, mean, run.low, run.high, run.laps)
 
     @property
     def _steps(self) -> float:
@@ -96,13 +102,28 @@ class OtherStarts:
 
     def _agree(self, old: Arrival, found: Arrival, run: MarchResult) -> bool:
         """Within twice what these steps leave: on a grid of times slip begins and ends up to a step apart."""
+        if old.average is not None and found.average is not None:
+            return alike(old.average, found.average)
         doubt = 2.0 * self._steps + run.closing + self.like.closing
         return 0 < old.period == found.period and abs(found.mean - old.mean) <= doubt
 
 
 def one_motion(arrivals: Sequence[Arrival]) -> bool:
-    """Whether every start reached the same periodic motion."""
-    return arrivals[0].period > 0 and all(one is arrivals[0] for one in arrivals)
+    """Whether every start reached the same motion."""
+    return all(one is arrivals[0] for one in arrivals)
+
+
+def unrepeated_arrival(march: MarchRun, run: MarchResult) -> Arrival:
+    """A motion that never repeats, followed on for its long mean."""
+    laps = march.means_of_laps(run, AVERAGED)
+    found = long_mean([laps])
+    return Arrival(0, found.mean, float(laps.min()), float(laps.max()), len(laps), found)
+
+
+def mean_of_unrepeated(march: MarchRun, runs: Sequence[MarchResult], own: LongMean) -> LongMean:
+    """The long mean of a motion that never repeats; its error by steps, too: what those of other runs make of it."""
+    others = [long_mean([march.means_of_laps(run, AVERAGED)]) for run in runs]
+    return own._replace(error=own.error + max(abs(each.mean - own.mean) for each in others))
 
 
 def first_arrival(march: MarchRun, mean: MarchMean) -> Arrival:

@@ -10,8 +10,16 @@ from functools import partial
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Status
-from frictionlab.methods.march.attractors import Arrival, OtherStarts, first_arrival, one_motion
+from frictionlab.methods.base import STATISTICAL, Answers, Status
+from frictionlab.methods.march.attractors import (
+    AVERAGED,
+    Arrival,
+    OtherStarts,
+    first_arrival,
+    mean_of_unrepeated,
+    one_motion,
+    unrepeated_arrival,
+)
 from frictionlab.methods.march.error import MarchMean, Plan, march_mean, restless, steps_needed, why_not
 from frictionlab.methods.march.laps import RESTING, STALLED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.prescribed import as_prescribed
@@ -20,6 +28,7 @@ from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.stability import friction_falls
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.methods.shooting.attractors import describe
+from frictionlab.methods.shooting.long_mean import SHARED, LongMean, spread_of_one_mean
 from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -28,13 +37,13 @@ from frictionlab.theory.uniqueness import is_convergent
 
 READABLE = 4096
 """Most steps per period of the run that the columns besides the mean are read from."""
-WATCHED = 300
-"""Laps over which a motion that never repeats is averaged."""
 
 
 @dataclass(frozen=True)
 class PointAnswer:
     """Mean friction (x1 + i x2), the error of its x1 and the period; the range of a mean that depends on the start.
+
+    window: of the range, or of a mean without a period.
 
     Whatever is not known is NaN.
     """
@@ -44,6 +53,7 @@ class PointAnswer:
     period: float = math.nan
     low: float = math.nan
     high: float = math.nan
+    window: float = math.nan
 
 
 class MarchedPoint:
@@ -54,7 +64,7 @@ class MarchedPoint:
         self.march = MarchRun(scene, law, plan.stepper)
         self.answer = PointAnswer()
         self.status: Status = "failed"
-        self.reason, self.model = "", ""
+        self.reason, self.model, self.error_kind = "", "", "estimated"
         self.orbit: Callable[[], Orbit | None] = nowhere
         if self.march.unmoved and (known := self._left_open_by_rest()) is not None:
             self._range(known.found.low, known.found.high)
@@ -84,9 +94,9 @@ class MarchedPoint:
             "give scene.initial to choose a start"
         )
 
-    def _range(self, low: float, high: float) -> None:
+    def _range(self, low: float, high: float, window: float = 1.0) -> None:
         self.status = "not_unique"
-        self.answer = PointAnswer(low=low, high=high)
+        self.answer = PointAnswer(low=low, high=high, window=window)
 
     def _judge(self, mean: MarchMean, tolerance: float) -> None:
         last = mean.runs[-1]
@@ -98,7 +108,10 @@ class MarchedPoint:
         readable = self._readable(mean.runs)
         arrivals, problem = self._arrivals(mean, readable)
         unique = not problem and one_motion(arrivals)
-        if (own := arrivals[0].period) > 0 and (unique or self.scene.initial is not None):
+        chosen = unique or self.scene.initial is not None
+        if not problem and (long := self._long_mean(arrivals, chosen)) is not None:
+            self._accept_long_mean(mean.runs, readable, long)
+        elif (own := arrivals[0].period) > 0 and chosen:
             # Which lap's mean is meant makes so much of a difference.
             spread = arrivals[0].high - arrivals[0].low if own == 1 else 0.0
             self._accept(replace(mean, error=mean.error + spread), readable, tolerance, own)
@@ -108,7 +121,8 @@ class MarchedPoint:
             self._leave_range(arrivals)
         if self.status == "ok" and not unique:
             others = "; ".join(filter(None, (describe(arrivals, 6), problem)))
-            self._remark(f"reached from scene.initial; {others}")
+            start = self.scene.initial is not None
+            self._remark(f"{'reached from scene.initial; ' if start else SHARED}{others}")
 
     def _give_up(self, last: MarchResult) -> None:
         """Without a steady state: refused where other steps would do, else failed."""
@@ -125,8 +139,7 @@ class MarchedPoint:
     def _arrivals(self, mean: MarchMean, readable: MarchResult) -> tuple[list[Arrival], str]:
         """Where the starts lead; and why one leads nowhere, or ''."""
         if restless(mean.runs, self.march):
-            seen = self.march.watch(mean.runs[-1], WATCHED)
-            first = Arrival(0, math.nan, seen.low, seen.high, seen.laps)
+            first = unrepeated_arrival(self.march, readable)
         else:
             first = first_arrival(self.march, mean)
         if not self._may_depend_on_start():
@@ -149,7 +162,9 @@ class MarchedPoint:
         return scene.belt_speed == 0.0 and elastic
 
     def _leave_range(self, arrivals: Sequence[Arrival]) -> None:
-        self._range(min(one.low for one in arrivals), max(one.high for one in arrivals))
+        ranges = [(one.low, one.high) if math.isnan(one.mean) else (one.mean, one.mean) for one in arrivals]
+        window = max(one.followed if one.average else 1 for one in arrivals)
+        self._range(min(low for low, _ in ranges), max(high for _, high in ranges), window)
         falls = self.law.memory_kind == "none" or friction_falls(self.law)
         why = "friction falls with speed: " if self._may_depend_on_start() and falls else ""
         if not why and arrivals[0].period == 0:
@@ -184,6 +199,25 @@ class MarchedPoint:
             self._remark(f"the state reached from {start}; no other start was tried")
         if not self.answer.error <= tolerance:
             self._remark(f"the error is above the tolerance {tolerance:.1e}")
+
+    def _long_mean(self, arrivals: Sequence[Arrival], chosen: bool) -> LongMean | None:
+        """Of a motion that never repeats: the first one, where it was chosen; else one that all share the mean of."""
+        if chosen:
+            return arrivals[0].average
+        known = [one.average for one in arrivals if one.average]
+        errors = [one.average.error if one.average else 0.0 for one in arrivals]  # steps tell theirs
+        spread = spread_of_one_mean([one.mean for one in arrivals], errors, 0.0)
+        return None if not known or math.isnan(spread) else known[0]._replace(error=max(errors) + spread)
+
+    def _accept_long_mean(self, runs: Sequence[MarchResult], readable: MarchResult, long: LongMean) -> None:
+        """Answer by the long mean of a motion that never repeats."""
+        others = [run for run in (runs if self.plan.steps else runs[-2:]) if run is not readable]
+        found = mean_of_unrepeated(self.march, others, long)
+        self.status, self.error_kind = "ok", STATISTICAL
+        self.orbit = partial(self._orbit, readable, 1)
+        window = AVERAGED * self.march.periods
+        self.answer = PointAnswer(complex(found.mean, math.nan), found.error, window=window)
+        self._remark(found.sentence(window))
 
     def _moves_on(self) -> bool:
         """Whether bristles that a moving belt drags along forget where the mass started."""
@@ -226,13 +260,13 @@ def answers_of(points: Sequence[MarchedPoint]) -> Answers:
         status=[point.status for point in points],
         reason=[point.reason for point in points],
         model=[point.model for point in points],
-        error_kind=["estimated" if point.status == "ok" else "" for point in points],
+        error_kind=[point.error_kind if point.status == "ok" else "" for point in points],
         mean=np.array([point.answer.mean for point in points]),
         error=np.array([point.answer.error for point in points]),
         period=np.array([point.answer.period for point in points]),
         mean_low=low,
         mean_high=np.array([point.answer.high for point in points]),
-        window=np.where(np.isnan(low), np.nan, 1.0),
+        window=np.array([point.answer.window for point in points]),
         seconds=np.array([point.seconds for point in points]),
         orbit=lambda i: points[i].orbit(),
     )

@@ -179,11 +179,11 @@ class MarchRun:
             run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
         return run
 
-    def watch(self, run: MarchResult, laps: int) -> MarchResult:
-        """So many more laps of a motion that does not repeat."""
+    def means_of_laps(self, run: MarchResult, laps: int) -> Floats:
+        """The mean friction along x1 of each of so many laps [laps], from the end of a run on."""
         way = self._way(run.pace)._replace(most=laps, stride=laps)
-        march = self._marched(run.pace, way, run.place)
-        return self._read(march, run.pace, len(march.laps.impulse))
+        each = self._marched(run.pace, way, run.place).laps
+        return np.asarray(interpreted(mean_friction)(each.impulse.real, each.duration))
 
     def track(self, run: MarchResult, laps: int) -> Orbit:
         """So many laps, from the end of a run that settled."""

@@ -32,6 +32,7 @@ from frictionlab.methods.shooting.attractors import (
     quick_starts,
     undamped,
 )
+from frictionlab.methods.shooting.long_mean import SHARED, spread_of_one_mean
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
@@ -349,6 +350,12 @@ class SteadyStates:
         reached = followed.reached
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
+        if not unique and scene.initial is None and not math.isnan(spread := self._spread(reached)):
+            self._accept(i, next((one for one in reached if one.average), first))
+            self.error[i] += spread
+            self._add(i, SHARED + describe(reached))
+            self.unique[i] = NOT_UNIQUE
+            return
         if not math.isnan(first.mean) and (unique or scene.initial is not None):
             self._accept(i, first)
             if unique:
@@ -379,6 +386,12 @@ class SteadyStates:
         self._leave_open(i, f"{why}: {describe(reached)}", low, high)
         self.window[i] = max(one.averaged_over for one in reached) * problem.common
 
+    def _spread(self, reached: Sequence[Attractor]) -> float:
+        """Of the means of all, where that passes for one number."""
+        long = any(one.average for one in reached)
+        tolerance = 0.0 if long else self.problem.goal.tolerance
+        return spread_of_one_mean([one.mean for one in reached], [one.error for one in reached], tolerance)
+
     def _accept(self, i: int, found: Attractor) -> None:
         """Answer by where the starts lead."""
         self.status[i] = "ok"
@@ -390,14 +403,11 @@ class SteadyStates:
             self.reason[i] = describe([found]) if found.period > 1 else ""
             return
         assert found.average is not None
-        mean, error, quasi_periodic = found.average
-        self.mean[i], self.error[i], self.error_kind[i] = complex(mean, math.nan), error, STATISTICAL
+        mean, error = complex(found.average.mean, math.nan), found.average.error
+        self.mean[i], self.error[i], self.error_kind[i] = mean, error, STATISTICAL
         self.states[i], self.spans[i] = found.points[-1], READ_OVER
         self.window[i] = found.followed * self.problem.common
-        named = "quasi-periodic" if quasi_periodic else "chaotic"
-        self.reason[i] = (
-            f"the motion does not repeat ({named}): its mean over {self.window[i]:.0f} drive periods"
-        )
+        self.reason[i] = found.average.sentence(float(self.window[i]))
 
     def _add(self, i: int, said: str) -> None:
         """To the reason."""

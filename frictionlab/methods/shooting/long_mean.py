@@ -25,6 +25,11 @@ TWO_SIGMA = (math.inf, 13.97, 4.527, 3.307, 2.869, 2.649, 2.517, 2.429, 2.366, 2
 """Student's t of two standard deviations (95.45 %), by degrees of freedom; beyond, 2 (1 + 1.3/n) is within .01."""
 MOST_ALIKE = 0.9
 """Largest correlation of neighbouring blocks that is believed: beyond, the time is too short to tell it."""
+SAME_MEAN, LEAST_APART = 1.5, 1e-6
+"""Difference of two means, over what their errors together allow at two standard errors, that keeps them one; and the
+smallest that tells them apart."""
+SHARED = "states that differ have this mean: "
+"""Said before a description of them."""
 
 
 class LongMean(NamedTuple):
@@ -33,6 +38,11 @@ class LongMean(NamedTuple):
     mean: float
     error: float
     quasi_periodic: bool
+
+    def sentence(self, window: float) -> str:
+        """What it is a mean of."""
+        named = "quasi-periodic" if self.quasi_periodic else "chaotic"
+        return f"the motion does not repeat ({named}): its mean over {window:.0f} drive periods"
 
 
 def birkhoff_mean(values: Floats) -> float:
@@ -62,6 +72,22 @@ def long_mean(motions: Sequence[Floats]) -> LongMean:
     if apart <= REGULAR * error:
         return LongMean(float(np.mean(weighted)), 2.0 * apart, True)
     return LongMean(float(np.mean(by_blocks)), error, False)
+
+
+def alike(one: LongMean, other: LongMean) -> bool:
+    """Whether two means may be those of one attractor."""
+    return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + LEAST_APART
+
+
+def spread_of_one_mean(means: Sequence[float], errors: Sequence[float], tolerance: float) -> float:
+    """By how much the means of states differ that pass for one number, within the tolerance; else NaN.
+
+    Motions next to a doubling, or that close in on an orbit slower than they are followed, differ without a
+    difference in their means. tolerance: 0 where one of them is a long mean, known to no more than its error.
+    """
+    spread, doubt = float(np.ptp(means)), float(np.max(errors))
+    known = tolerance - doubt if tolerance else SAME_MEAN * math.sqrt(2.0) * doubt + LEAST_APART
+    return spread if spread <= known else math.nan
 
 
 def _halves(values: Floats) -> list[Floats]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from frictionlab.methods.shooting.attractors import (
     FollowedStarts,
     orbit_at_the_end,
 )
-from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean
+from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, alike, birkhoff_mean, long_mean
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
@@ -29,9 +28,6 @@ ACCURACY, FINER = 1e-7, 1e-9
 """Of the maps of these periods, over the normal load; and of those that tell what they may be off by."""
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
-SAME_MEAN, LEAST_APART = 1.5, 1e-6
-"""Difference of two means, over what their errors together allow at two standard errors, that keeps them one; and the
-smallest that tells them apart."""
 
 
 class LongMotion:
@@ -139,7 +135,7 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
     groups: list[list[int]] = []
     rising = sorted(alone, key=lambda place: alone[place].mean)
     for place in rising:
-        if groups and _alike(alone[groups[-1][-1]], alone[place]):
+        if groups and alike(alone[groups[-1][-1]], alone[place]):
             groups[-1].append(place)
         else:
             groups.append([place])
@@ -161,7 +157,3 @@ def with_errors_of_maps(motions: dict[int, LongMotion], means: dict[int, LongMea
         for mean, place in {mean: place for place, mean in means.items() if mean.quasi_periodic}.items()
     }
     return {place: told.get(mean, mean) for place, mean in means.items()}
-
-
-def _alike(one: LongMean, other: LongMean) -> bool:
-    return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + LEAST_APART

@@ -327,15 +327,18 @@ def test_a_belt_at_rest_that_can_hold_the_mass_needs_a_start():
     assert started.columns["mean_friction"][0] == pytest.approx(0.1, abs=1e-6)
 
 
-def test_a_motion_that_never_repeats_shows_the_range_of_its_means():
+def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
+    """Some starts come to an orbit of seven periods, or lag behind it for longer than they are followed."""
     law = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1.0, stribeck_exponent=1.0)
     one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.1, frequency=math.sqrt(2.0)))
-    answers = solve(one, law, 1e-3)
-    assert answers.status == ["not_unique"]
-    assert "do not repeat within" in answers.reason[0]
-    assert np.isnan(answers.columns["mean_friction"][0])
-    assert answers.columns["mean_high"][0] - answers.columns["mean_low"][0] > 0.1
-    assert answers.columns["window"][0] == 1.0
+    answers, of_14_periods = solve(one, law, 1e-3), 0.24989114957
+    assert (answers.status, answers.error_kind) == (["ok"], ["statistical"])
+    assert "does not repeat (quasi-periodic)" in answers.reason[0]
+    assert answers.columns["error"][0] < 1e-5
+    assert answers.columns["window"][0] == 512.0
+    assert np.isnan(answers.columns["period"][0])
+    assert np.isnan(answers.columns["mean_low"][0])
+    assert covered(answers, of_14_periods)  # by shooting, which every start comes near
 
 
 @pytest.mark.parametrize("start", [None, Initial(x=0.5)])
@@ -388,13 +391,14 @@ def test_where_two_states_attract_both_are_told_and_the_given_start_decides():
     sliding = scene(0.6, **quiet, initial=Initial(x=law.sliding_friction(0.6)))
     given_, expected = solve(sliding, law), with_columns(Shooting(), [sliding], law, 1e-8)
     assert open_.status == ["not_unique"]
-    assert open_.columns["window"][0] == 1.0
+    assert open_.columns["window"][0] == 512.0
     assert "friction falls with speed: " in open_.reason[0]
     assert given_.status == expected.status == ["ok"]
     assert covered(given_, expected.columns["mean_friction"])
     assert "reached from scene.initial; an orbit of one drive period" in given_.reason[0]
     low, high = open_.columns["mean_low"][0], open_.columns["mean_high"][0]
-    assert low <= given_.columns["mean_friction"][0] <= high
+    error = given_.columns["error"][0]
+    assert low - error <= given_.columns["mean_friction"][0] <= high + error
 
 
 def test_a_mass_released_between_two_steps_is_covered_by_the_error():

@@ -12,9 +12,9 @@ from frictionlab.methods.march.error import WORK, MarchMean, crossing, steps_nee
 from frictionlab.methods.march.laps import CLOSED, STALLED, TOO_FAST, MarchState
 from frictionlab.methods.march.run import MarchResult, MarchRun
 from frictionlab.methods.shooting.attractors import starts
-from frictionlab.methods.shooting.long_mean import LongMean, alike, long_mean
+from frictionlab.methods.shooting.long_mean import LongMean, long_mean, near_each_other
 
-AVERAGED = 512
+LAPS_AVERAGED = 512
 """Laps over which a motion that never repeats is averaged."""
 NOISE = 1e-3
 """Spread of the means of a motion that does not repeat, over friction at rest, that passes for noise of the steps."""
@@ -103,7 +103,7 @@ class OtherStarts:
     def _agree(self, old: Arrival, found: Arrival, run: MarchResult) -> bool:
         """Within twice what these steps leave: on a grid of times slip begins and ends up to a step apart."""
         if old.average is not None and found.average is not None:
-            return alike(old.average, found.average)
+            return near_each_other(old.average, found.average)
         doubt = 2.0 * self._steps + run.closing + self.like.closing
         return 0 < old.period == found.period and abs(found.mean - old.mean) <= doubt
 
@@ -115,14 +115,14 @@ def one_motion(arrivals: Sequence[Arrival]) -> bool:
 
 def unrepeated_arrival(march: MarchRun, run: MarchResult) -> Arrival:
     """A motion that never repeats, followed on for its long mean."""
-    laps = march.means_of_laps(run, AVERAGED)
+    laps = march.means_of_laps(run, LAPS_AVERAGED)
     found = long_mean([laps])
     return Arrival(0, found.mean, float(laps.min()), float(laps.max()), len(laps), found)
 
 
 def mean_of_unrepeated(march: MarchRun, runs: Sequence[MarchResult], own: LongMean) -> LongMean:
     """The long mean of a motion that never repeats; its error by steps, too: what those of other runs make of it."""
-    others = [long_mean([march.means_of_laps(run, AVERAGED)]) for run in runs]
+    others = [long_mean([march.means_of_laps(run, LAPS_AVERAGED)]) for run in runs]
     return own._replace(error=own.error + max(abs(each.mean - own.mean) for each in others))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import STATISTICAL, Answers, Status
 from frictionlab.methods.march.attractors import (
-    AVERAGED,
+    LAPS_AVERAGED,
     Arrival,
     OtherStarts,
     first_arrival,
@@ -215,7 +215,7 @@ class MarchedPoint:
         found = mean_of_unrepeated(self.march, others, long)
         self.status, self.error_kind = "ok", STATISTICAL
         self.orbit = partial(self._orbit, readable, 1)
-        window = AVERAGED * self.march.periods
+        window = LAPS_AVERAGED * self.march.periods
         self.answer = PointAnswer(complex(found.mean, math.nan), found.error, window=window)
         self._remark(found.sentence(window))
 

@@ -74,7 +74,7 @@ def long_mean(motions: Sequence[Floats]) -> LongMean:
     return LongMean(float(np.mean(by_blocks)), error, False)
 
 
-def alike(one: LongMean, other: LongMean) -> bool:
+def near_each_other(one: LongMean, other: LongMean) -> bool:
     """Whether two means may be those of one attractor."""
     return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + LEAST_APART
 

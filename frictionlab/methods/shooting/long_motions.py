@@ -14,7 +14,7 @@ from frictionlab.methods.shooting.attractors import (
     FollowedStarts,
     orbit_at_the_end,
 )
-from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, alike, birkhoff_mean, long_mean
+from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
@@ -135,7 +135,7 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
     groups: list[list[int]] = []
     rising = sorted(alone, key=lambda place: alone[place].mean)
     for place in rising:
-        if groups and alike(alone[groups[-1][-1]], alone[place]):
+        if groups and near_each_other(alone[groups[-1][-1]], alone[place]):
             groups[-1].append(place)
         else:
             groups.append([place])

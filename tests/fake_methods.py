@@ -71,9 +71,6 @@ class Fake(Method):
             orbit=lambda i: _orbit(speeds[i]),
         )
 
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        return 0.25
-
 
 class Another(Fake):
     """The same under another name."""

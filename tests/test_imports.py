@@ -39,13 +39,15 @@ ARROWS = {
         "theory": "laws quantities scene",
         "shape": "laws quantities",
         "methods.base": "laws orbit quantities scene",
+        "methods.under_way": "compile",
         "methods.periodic": "compile dynamics laws numerics orbit quantities scene theory",
         "methods.prescribed": (
-            "compile dynamics laws orbit quantities scene theory methods.base methods.periodic"
+            "compile dynamics laws orbit quantities scene theory methods.base methods.periodic "
+            "methods.under_way"
         ),
         "methods.shooting": (
             "compile dynamics laws orbit quantities scene theory methods.base methods.periodic "
-            "methods.prescribed"
+            "methods.prescribed methods.under_way"
         ),
         "methods.refusals": "laws methods.shooting scene",
         "methods.exact": (
@@ -53,7 +55,7 @@ ARROWS = {
         ),
         "methods.march": (
             "compile dynamics laws numerics orbit quantities scene theory methods.base methods.periodic "
-            "methods.prescribed methods.refusals methods.shooting"
+            "methods.prescribed methods.refusals methods.shooting methods.under_way"
         ),
         "methods.reduced": (
             "compile dynamics laws numerics orbit quantities scene theory methods.base methods.exact "
@@ -65,8 +67,8 @@ ARROWS = {
         "study": "columns laws methods.base mistakes printable quantities registry scene units",
         "results": "columns laws methods.base orbit quantities registry scene shape study printable theory units",
         "runner": (
-            "columns compile faults laws methods.base mistakes onsets orbit printable quantities registry "
-            "results scene study theory"
+            "columns compile faults laws methods.base methods.under_way mistakes onsets orbit printable "
+            "quantities registry results scene study theory"
         ),
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
         "charts": "columns printable study units",

@@ -1,8 +1,9 @@
-"""``check``: what a study will take, before anything is computed."""
+"""``check``: what a study will take, before it is run."""
 
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,10 +11,11 @@ from typing import TYPE_CHECKING
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.output import print_records, print_result
+from frictionlab.cli.output import metered, print_records, print_result
 
 if TYPE_CHECKING:
     from frictionlab.runner.plan import Planned
+    from frictionlab.runner.price import Price
     from frictionlab.study import Plugins
 
 
@@ -26,20 +28,38 @@ if TYPE_CHECKING:
 def check_command(
     study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], plugins: Plugins, as_json: bool
 ) -> None:
-    """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed.
+    """Check STUDY and tell what it will take: models, refusals, time. No answer is kept, nothing is compiled.
 
-    The plugins that STUDY lists are Python code, which is run to check it, unless --no-plugins is given.
+    The time follows from that of some points, which are solved for a few seconds. The plugins that STUDY lists are
+    Python code, which is run to check it, unless --no-plugins is given.
     """
     from frictionlab.runner import batch
+    from frictionlab.runner.chunks import task_of
     from frictionlab.runner.plan import plan
+    from frictionlab.runner.price import prices
 
-    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides, law_files, plugins)]
+    jobs = batch.jobs(study, None, overrides, law_files, plugins)
+    planned = [(job.name, plan(job.study)) for job in jobs]
+    clock, processor = time.perf_counter(), time.process_time()
+    with metered() as meter:
+        meter.begins("timing", "points")
+        priced = [
+            list(prices(list(job.study.foreseen().curves()), task_of(job.study), meter).values())
+            for job in jobs
+        ]
+    # what other programs leave of a core
+    busy = max(1.0, (time.perf_counter() - clock) / (time.process_time() - processor))
     if as_json:
-        print_records([{"study": name, **entry.record()} for name, entries in planned for entry in entries])
+        print_records(
+            [
+                {"study": name, **entry.record(), **price.record()}
+                for (name, entries), each in zip(planned, priced, strict=True)
+                for entry, price in zip(entries, each, strict=True)
+            ]
+        )
     else:
         lines = [line for name, entries in planned for line in _planned_lines(name, entries)]
-        costs = _cost_lines([entry for _, entries in planned for entry in entries])
-        print_result("\n".join([*lines, *costs]))
+        print_result("\n".join([*lines, *_price_lines([entries for _, entries in planned], priced, busy)]))
 
 
 def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
@@ -58,13 +78,31 @@ def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
     return lines
 
 
-def _cost_lines(planned: Sequence[Planned]) -> list[str]:
-    kernel, cores = sum(entry.seconds for entry in planned), os.cpu_count() or 1
-    return [
-        f"about {_time(kernel)} of kernel time, {_time(kernel / cores)} on {cores} cores",
-        "not counted: kernels that this machine has not kept yet are compiled once, 5 to 15 s each",
-    ]
+def _price_lines(
+    planned: Sequence[Sequence[Planned]], priced: Sequence[Sequence[Price]], busy: float
+) -> list[str]:
+    """Of every study, which are run one after another. busy: how much longer than alone everything takes."""
+    from frictionlab.runner.price import A_CURVE, BESIDES, COMPILING, MOST_DRAWN, solving_seconds
+    from frictionlab.runner.progress import spoken
 
-
-def _time(seconds: float) -> str:
-    return f"{seconds * 1e3:.3g} ms" if seconds < 1.0 else f"{seconds:.3g} s"
+    prices = [each for of_study in priced for each in of_study]
+    kernels = sorted(frozenset[str]().union(*(each.to_compile for each in prices)))
+    solving = sum(solving_seconds(each) for each in priced)
+    compiling = busy * COMPILING * len(kernels)
+    drawn = sum(min(sum(each.curves for each in entries), MOST_DRAWN) for entries in planned)
+    besides = busy * (BESIDES * len(planned) + A_CURVE * drawn)
+    points = sum(each.points for entries in planned for each in entries)
+    whole = "at least" if any(each.at_least for each in prices) else "about"
+    measured = min(points, sum(each.measured for each in prices))
+    how = f"{spoken(solving)} of it to solve, as measured on {measured} of {points} points"
+    lines = [f"{whole} {spoken(solving + compiling + besides)} on {os.cpu_count()} cores, {how}"]
+    if kernels:
+        names = ", ".join(each.split("_", 1)[1].rpartition("_")[0].replace("_", " ") for each in kernels)
+        lines.append(
+            f"{spoken(compiling)} of it to compile what this machine has not kept yet, once: {names}"
+        )
+    if any(not each.measured for each in prices if each.to_compile):
+        lines.append(
+            "more where points take long: that is known once frictionlab warm, or a run, has compiled it"
+        )
+    return lines

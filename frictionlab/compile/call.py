@@ -6,6 +6,7 @@ import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from functools import cached_property
 from typing import Any
 
@@ -24,6 +25,8 @@ _config: Any = numba.config
 
 PYTHON_AT_MOST = 4.0
 """Processor time [s] that a process lets Python spend on a kernel before it compiles it, in 10 to 20 s, once."""
+PYTHON_IN_A_TRIAL = 0.5
+"""Processor time [s] of a call by Python where nothing is to be compiled."""
 
 
 class _Choice:
@@ -45,6 +48,32 @@ def compiling_at_once() -> Iterator[None]:
         yield
     finally:
         _choice.always_compile = before
+
+
+class NotKept(BaseException):
+    """Kernels that would have to be compiled where nothing is to be; no error of the point that asks for them."""
+
+    def __init__(self, kernels: frozenset[str]) -> None:
+        super().__init__(", ".join(sorted(kernels)))
+        self.kernels = kernels
+
+
+_compiles_nothing = ContextVar("compiles nothing", default=False)
+
+
+@contextlib.contextmanager
+def compiling_nothing() -> Iterator[None]:
+    """Meanwhile, in this context, a kernel that Python does not bring to an end soon raises NotKept."""
+    token = _compiles_nothing.set(True)
+    try:
+        yield
+    finally:
+        _compiles_nothing.reset(token)
+
+
+def seconds_by_python() -> float:
+    """Processor time [s] that this process has spent so far on kernels run by Python."""
+    return sum(_spent.values())
 
 
 _ready: set[Any] = set()
@@ -86,9 +115,9 @@ class Held:
         """What tells it from arguments of other types."""
         return self._call.key(self._arguments)
 
-    def is_kept(self) -> bool:
-        """Whether there is machine code for it."""
-        return self._call.is_kept(self._arguments)
+    def not_kept(self) -> frozenset[str]:
+        """The kernels that have to be compiled for it."""
+        return self._call.not_kept(self._arguments)
 
 
 class KernelCall:
@@ -111,6 +140,8 @@ class KernelCall:
             found = None if self._is_for_machine(key, arguments) else self._limited(key, arguments)
             if found is not None:
                 return found
+            if _compiles_nothing.get() and not _config.DISABLE_JIT and (lost := self.not_kept(arguments)):
+                raise NotKept(lost)
             self._prepare(arguments)
             _ready.add(key)
         entry, given = self.entry(arguments), [_for_machine(each) for each in arguments]
@@ -132,14 +163,15 @@ class KernelCall:
         """The machine code, for arguments like these."""
         return compiled(self.kernel, None if self.law is None else self._seen(arguments))
 
-    def is_kept(self, arguments: tuple[Any, ...]) -> bool:
-        """Whether there is machine code, in this process or on disk, for arguments like these."""
+    def not_kept(self, arguments: tuple[Any, ...]) -> frozenset[str]:
+        """The names of the entries to compile for arguments like these: no machine code is in memory or on disk."""
         entry = compiled(self.kernel, self._unaddressed())
         held = [each for each in arguments if isinstance(each, Held)]
         # a kernel that others make arguments of is compiled once, whatever they make
         kept = entry.is_kept_at_all() if held else entry.is_kept(*arguments)
         # the methods of a law that it calls take less to compile than Python takes to be run
-        return kept and all(each.is_kept() for each in held)
+        own = frozenset[str]() if kept else frozenset({str(entry.entry.__module__)})
+        return own.union(*(each.not_kept() for each in held))
 
     def by_python(self, *arguments: Any) -> Any:
         """What the kernel returns where Python runs it."""
@@ -160,7 +192,7 @@ class KernelCall:
     def _is_for_machine(self, key: Any, arguments: tuple[Any, ...]) -> bool:
         if _config.DISABLE_JIT or _choice.always_compile or _spent.get(key, 0.0) >= PYTHON_AT_MOST:
             return True
-        return self.is_kept(arguments)
+        return not self.not_kept(arguments)
 
     def _prepare(self, arguments: tuple[Any, ...]) -> None:
         """Compile the kernel, or load it."""
@@ -177,16 +209,17 @@ class KernelCall:
             self._seen(
                 arguments
             )  # what numba cannot compile in a law of others is told whatever Python can do
-        spent, found = _spent.get(key, 0.0), None
+        spent, found, trial = _spent.get(key, 0.0), None, _compiles_nothing.get()
         begin, start = time.thread_time(), time.perf_counter()
         with _unwritten(arguments) as keep:
             try:
-                with limited_to(PYTHON_AT_MOST - spent), np.errstate(all="ignore"):
+                left = PYTHON_AT_MOST - spent
+                with limited_to(min(left, PYTHON_IN_A_TRIAL) if trial else left), np.errstate(all="ignore"):
                     found = self.by_python(*arguments), time.perf_counter() - start
                 keep()
                 _spent[key] = spent + time.thread_time() - begin
             except (TooLong, ArithmeticError, ValueError):  # Python refuses numbers that machine code takes
-                _spent[key] = PYTHON_AT_MOST
+                _spent[key] = spent if trial else PYTHON_AT_MOST
         return found
 
 

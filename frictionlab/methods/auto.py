@@ -62,11 +62,6 @@ class Auto(Method):
                 return reasons
         return super().refusals(scenes, law)
 
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """The cost of the chosen method."""
-        method, _reason = self.choice(scene, law)
-        return method.cost(scene, law, tolerance) if method is not None else 0.0
-
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:

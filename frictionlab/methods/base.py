@@ -135,10 +135,6 @@ class Method(Record, ABC):
         """
         return []
 
-    @abstractmethod
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """Expected kernel time per point [s], once compiled; for planning only."""
-
 
 class ReducedModel(Method):
     """A method that solves a simpler problem than the scene states.

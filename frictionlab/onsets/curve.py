@@ -23,10 +23,8 @@ class _Effort(NamedTuple):
 
 
 _USUAL, _IF_QUICK, _IF_STARTS = _Effort(1e-6, 48), _Effort(1e-9, 96), _Effort(1e-5, 36)
-"""Along a curve; of motions that are quick to solve for; where no theorem makes motions unique, and starts are
-compared for each (in the plane at most one for four points of the curve)."""
-_SLOW, _QUICK = 3e-3, 5e-5
-"""Seconds a motion: those that take longer are not solved for again, quick ones are all looked at."""
+"""Along a curve; of motions that are quick to solve for, under constant friction along the belt; where no theorem
+makes motions unique, and starts are compared for each (in the plane at most one for four points of the curve)."""
 _NEAR = 0.3
 """DistanceOf from stick below which the motions between two of a kind are looked at, for a window that none shows."""
 _ROUNDING = 1e-12
@@ -78,7 +76,8 @@ class _Search:
     def __init__(self, motions: CurveMotions, rows: list[KnownRow], most: int) -> None:
         self.motions, self.rows = motions, rows
         self.seen: dict[float, MotionSeen] = {}
-        self.slow, self.quick = motions.seconds > _SLOW, motions.seconds <= _QUICK
+        scene, law = motions.scene, motions.law
+        self.quick = scene.load_along_belt_only and law.constant_sliding_friction() and law.monotone()
         self.compares_starts = not is_convergent(motions.scene, motions.law)
         # where starts are compared a motion costs many times what it does otherwise
         effort = _IF_STARTS if self.compares_starts else _IF_QUICK if self.quick else _USUAL
@@ -88,7 +87,7 @@ class _Search:
 
     @property
     def left(self) -> int:
-        return 0 if self.slow else self.most - self.motions.looks
+        return self.most - self.motions.looks if self.motions.tell_onsets else 0
 
     def onsets(self) -> list[Onset]:
         self._look_at_rows()
@@ -99,10 +98,9 @@ class _Search:
 
     def _closed_form_end(self) -> float | None:
         """V_lin, where slip of constant friction along the belt alone stops to reverse and to stick."""
-        scene, law = self.motions.scene, self.motions.law
-        if not (scene.load_along_belt_only and law.constant_sliding_friction() and law.monotone()):
+        if not self.quick:
             return None
-        end = friction_free_velocity(scene, law)
+        end = friction_free_velocity(self.motions.scene, self.motions.law)
         return end if self.rows[0].belt_speed < end <= self.rows[-1].belt_speed else None
 
     # --- looking ----------------------------------------------------------------------------------------------------
@@ -208,10 +206,8 @@ class _Search:
         return _NOISE * error / (self.motions.friction * slope)
 
     def _why_not(self) -> str:
-        if math.isinf(self.motions.seconds):
+        if not self.motions.tell_onsets:
             return "not located: the method does not solve for the instants of stick and reversal"
-        if self.slow:
-            return f"not located: a motion takes about {self.motions.seconds:.1g} s"
         if self.compares_starts:
             return "not located: starts are compared, and no more motions were solved for"
         return "not located: so many curves leave no more motions to solve for"

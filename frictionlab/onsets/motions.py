@@ -54,12 +54,11 @@ class CurveMotions:
     """The steady motions of one scene under a law at any belt speed > 0.
 
     law: in the lengths and times of the scene, per unit of its normal load. solve: by the method of the curve.
-    seconds: that one takes, as expected; infinite where they say nothing about onsets. looks: how many were solved
-    for.
+    tell_onsets: whether instants of stick and reversal are solved for. looks: how many were solved for.
     """
 
-    def __init__(self, scene: Scene, law: FrictionLaw, solve: SolveScenes, seconds: float) -> None:
-        self.scene, self.law, self.solve, self.seconds = scene, law, solve, seconds
+    def __init__(self, scene: Scene, law: FrictionLaw, solve: SolveScenes, tell_onsets: bool) -> None:
+        self.scene, self.law, self.solve, self.tell_onsets = scene, law, solve, tell_onsets
         self.looks = 0
         # a film that holds nothing at rest never sticks; its friction is measured by that of slip
         self.limit = friction_at_rest(law) or _NOTHING

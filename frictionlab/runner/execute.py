@@ -9,8 +9,7 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 
 from frictionlab.faults import BrokenPlugin
-from frictionlab.results.part import Part
-from frictionlab.runner.limit import solve_within
+from frictionlab.runner.limit import Solved, solve_within
 from frictionlab.runner.open_chunks import OpenChunk
 
 TICK = 0.1
@@ -24,7 +23,7 @@ MOST_SENDINGS = 5
 MOST_RENEWALS = 20
 """How often a pool is made anew that breaks before anything has come back."""
 
-Take = Callable[[OpenChunk, list[Part]], None]
+Take = Callable[[OpenChunk, Solved], None]
 Renew = Callable[[], Executor]
 
 
@@ -62,10 +61,10 @@ class _Sent:
 
     def __init__(self, executor: Executor, renew: Renew | None) -> None:
         self._executor, self._renew = executor, renew
-        self._done: SimpleQueue[Future[list[Part]]] = SimpleQueue()
+        self._done: SimpleQueue[Future[Solved]] = SimpleQueue()
         self._tries: dict[int, int] = {}
         self._renewed = 0
-        self.waiting: dict[Future[list[Part]], OpenChunk] = {}
+        self.waiting: dict[Future[Solved], OpenChunk] = {}
 
     def send(self, work: OpenChunk) -> None:
         """Send a chunk out. Raises BrokenExecutor."""
@@ -79,7 +78,7 @@ class _Sent:
         self.waiting[future] = work
         future.add_done_callback(self._done.put)
 
-    def one_done(self, seconds: float) -> Future[list[Part]] | None:
+    def one_done(self, seconds: float) -> Future[Solved] | None:
         """A chunk that came back, within so many seconds."""
         with suppress(Empty):
             return self._done.get(timeout=seconds)
@@ -106,14 +105,14 @@ def _take_one(sent: _Sent, take: Take, tick: Callable[[], None]) -> None:
     future = sent.one_done(TICK)
     if future is not None and (work := sent.waiting.pop(future, None)) is not None:
         try:
-            parts = future.result()
+            solved = future.result()
         except (KeyboardInterrupt, BrokenPlugin):
             raise
         except (Exception, CancelledError) as problem:  # solving raises nothing else: its worker was lost
             sent.send_again(work, problem)
         else:
             sent.came_back()
-            take(work, parts)
+            take(work, solved)
     tick()
 
 

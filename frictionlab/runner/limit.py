@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
+from typing import NamedTuple
 
+from frictionlab.compile.notice import seconds_compiling
 from frictionlab.methods.base import refused
+from frictionlab.methods.under_way import UnderWay, told_to
 from frictionlab.results.part import Part
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.solve import solve, text_columns
@@ -12,21 +16,42 @@ from frictionlab.runner.workers import OverLimit, within
 
 TOGETHER = 10
 """Points of a chunk for which it is allowed the time of one: most need a small part of theirs."""
+under_way: dict[int, UnderWay] = {}
+"""By the id of each chunk that this process is solving: how far that is."""
 
 
-def solve_within(chunk: Chunk) -> list[Part]:
+class Solved(NamedTuple):
+    """The rows of a chunk, and the seconds they took, compiling left out."""
+
+    parts: list[Part]
+    seconds: float
+
+
+def solve_within(chunk: Chunk) -> Solved:
     """Answer every point of a chunk; what takes too long is halved, down to the single points that do.
 
     Raises BrokenPlugin.
     """
     seconds, size = chunk.task.seconds_per_point, len(chunk.rows)
     try:
-        return within(seconds * max(1.0, size / TOGETHER), solve, chunk)
+        return within(seconds * max(1.0, size / TOGETHER), solve_timed, chunk)
     except OverLimit:
         if size == 1:
-            return [_killed(chunk)]
-    half = size // 2
-    return [part for where in (slice(half), slice(half, None)) for part in solve_within(chunk.of(where))]
+            return Solved([_killed(chunk)], seconds)
+    halves = [solve_within(chunk.of(where)) for where in (slice(size // 2), slice(size // 2, None))]
+    return Solved([part for half in halves for part in half.parts], sum(half.seconds for half in halves))
+
+
+def solve_timed(chunk: Chunk) -> Solved:
+    """Answer every point of a chunk on this thread. Raises BrokenPlugin."""
+    start = time.perf_counter() - seconds_compiling()
+    now = under_way[id(chunk)] = UnderWay(start)
+    try:
+        with told_to(now):
+            parts = solve(chunk)
+    finally:
+        under_way.pop(id(chunk), None)
+    return Solved(parts, time.perf_counter() - seconds_compiling() - start)
 
 
 def _killed(chunk: Chunk) -> Part:

@@ -95,8 +95,7 @@ def _onsets_of_rest(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, mos
     ascending = [known[speed] for speed in sorted(known)]
     scene, law, method = curve.scenes.scene, curve.law, curve.method.method
     solve = partial(_solved, curve, tolerance)
-    seconds = method.cost(scene, law, tolerance) if method.resolves_events else math.inf
-    return onsets_along(CurveMotions(scene, law, solve, seconds), ascending, most)
+    return onsets_along(CurveMotions(scene, law, solve, method.resolves_events), ascending, most)
 
 
 def _may_lose_stability(curve: StudyCurve) -> bool:

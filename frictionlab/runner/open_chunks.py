@@ -18,12 +18,14 @@ from frictionlab.study import StudyCurve
 class OpenChunk:
     """A chunk to solve, and where its answers go.
 
-    number: its place among all chunks. whole: the rows of all its points; of these ``left`` are the places without an
-    answer. key: the hash of what the whole computes, None where that cannot be known. same: others of the same key.
+    number: its place among all chunks. kind: the labels of its law and its method. whole: the rows of all its points;
+    of these ``left`` are the places without an answer. key: the hash of what the whole computes, None where that
+    cannot be known. same: others of the same key.
     """
 
     chunk: Chunk
     number: int
+    kind: tuple[str, str]
     whole: Places
     left: Places
     key: str | None = None
@@ -62,5 +64,5 @@ def open_chunks(
             chunk = cut.chunk(task)
             key = None if keys is None else keys.of(chunk, cut.curve.kind, cut.curve.method.name)
             yield OpenChunk(
-                chunk if len(left) == len(places) else chunk.of(left), number, cut.rows, left, key
+                chunk if len(left) == len(places) else chunk.of(left), number, cut.kind, cut.rows, left, key
             )

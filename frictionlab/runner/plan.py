@@ -1,4 +1,4 @@
-"""The plan of a study: curves and points per law and method, refusals, models, cost. Nothing is computed."""
+"""The plan of a study: curves and points per law and method, refusals, models. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from frictionlab.study import Study, StudyCurve
 
 @dataclass(frozen=True)
 class Planned:
-    """The points of one law and one method. seconds: expected kernel time on one core, once compiled.
+    """The points of one law and one method.
 
-    about: belt speeds are chosen as the run goes, so that points and seconds are not known better.
+    about: belt speeds are chosen as the run goes, so that points are not known better.
     shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
     """
 
@@ -30,7 +30,6 @@ class Planned:
     points: int
     refused: dict[str, int]
     models: dict[str, int]
-    seconds: float
     about: bool
     shapeless: int
     add_belt_speeds: list[float]
@@ -50,16 +49,14 @@ def plan(study: Study) -> list[Planned]:
 
 def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
     tolerance, about = study.tolerance, study.chosen_range is not None
-    first, refusals, models, seconds = curves[0], Counter[str](), Counter[str](), 0.0
+    first, refusals, models = curves[0], Counter[str](), Counter[str]()
     for curve in curves:
         method, law = curve.method.method, curve.law
         reasons = method.refusals(curve.scenes, law)
         refusals.update(reason for reason in reasons if reason is not None)
         able = [place for place, reason in enumerate(reasons) if reason is None]
         if able:
-            scene = curve.scenes[able[0]]
             models[_model(method, curve.scenes.taken(able), law, tolerance)] += len(able)
-            seconds += len(able) * method.cost(scene, law, tolerance)
     given = (
         [] if about else [(curve.scenes, curve.law) for curve in curves]
     )  # chosen ones are not to be added to
@@ -72,7 +69,6 @@ def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
         points=sum(len(curve.rows) for curve in curves),
         refused=dict(refusals),
         models=dict(models),
-        seconds=seconds,
         about=about,
         shapeless=shapeless,
         add_belt_speeds=add_belt_speeds,

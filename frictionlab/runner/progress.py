@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -13,8 +14,8 @@ from typing import Self, TextIO
 
 from frictionlab.compile.notice import kernel_at_work
 
-Progress = Callable[[int, int], None]
-"""Called now and then with the number of points done and of all points."""
+Progress = Callable[[int, int, float], None]
+"""Called now and then with the number of points done and of all points, and the seconds left, NaN where not known."""
 
 QUIET = 2.0
 """Time [s] before a run prints its progress."""
@@ -22,7 +23,7 @@ OFTEN, NOW_AND_THEN = 0.2, 5.0
 """Time [s] between two states of the updating line, and between two lines where none can be updated."""
 
 
-def silent(done: int, total: int) -> None:
+def silent(done: int, total: int, left: float = math.nan) -> None:
     """No progress."""
 
 
@@ -55,10 +56,11 @@ class Meter:
         """The next stage of the run, and what is counted in it."""
         self._doing, self._things = doing, things
         self._done = self._total = self._at_first = 0
-        self._working, self._last = 0.0, time.monotonic()
+        self._working, self._last, self._left = 0.0, time.monotonic(), math.nan
 
-    def __call__(self, done: int, total: int) -> None:
-        """Tell how far the stage is, if it is time to."""
+    def __call__(self, done: int, total: int, left: float = math.nan) -> None:
+        """Tell how far the stage is, if it is time to; left: seconds, by the count of things where not known."""
+        self._left = left
         self._at_first = self._at_first if self._total else done
         self._done, self._total = done, total
         self.look()
@@ -78,6 +80,7 @@ class Meter:
         count = f": {self._done} of {self._total} {self._things}" if self._total else ""
         new = self._done - self._at_first  # kernels are compiled once: that is not held against the points
         left = self._working / new * (self._total - self._done) if new else 0.0
+        left = left if math.isnan(self._left) else self._left
         facts = [f"compiling {kernel}"] if kernel else []
         facts += [self._doing + count, *([f"about {spoken(left)} left"] if left > 0.5 else [])]
         return self._whose + ", ".join([*facts, f"{spoken(passed)} so far"])

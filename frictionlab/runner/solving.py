@@ -12,8 +12,9 @@ import numpy as np
 from frictionlab.results.part import Part
 from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts
 from frictionlab.runner.errors import SaveError
+from frictionlab.runner.forecast import Forecast
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
-from frictionlab.runner.limit import solve_within
+from frictionlab.runner.limit import Solved, solve_within
 from frictionlab.runner.open_chunks import OpenChunk, open_chunks
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.workforce import Workforce
@@ -70,6 +71,7 @@ class Solving:
         self._answers: dict[int, str | list[Part]] = {}
         self._by_key: dict[str, Part] = {}
         self._sent: dict[str, OpenChunk] = {}
+        self._forecast = Forecast(())
 
     @property
     def in_memory(self) -> bool:
@@ -84,21 +86,30 @@ class Solving:
         Raises BrokenPlugin; BrokenExecutor, KeyboardInterrupt with what was solved by then taken.
         """
         number, shares = share
-        if shares > 1:
-            own = (
-                cut
-                for at, cut in enumerate(cuts(self.curves, chunk_size(self.curves)))
-                if at % shares == number - 1
-            )
-            self.points = sum(len(cut.rows) for cut in own)
+        own = [
+            (cut.kind, len(cut.rows))
+            for at, cut in enumerate(cuts(self.curves, chunk_size(self.curves)))
+            if at % shares == number - 1
+        ]
+        self.points = sum(points for _, points in own)
         known = sum(len(part.rows) for part in self.known)
 
+        self._forecast = forecast = Forecast(own)
+
         def tick() -> None:
-            progress(known + self.found + self.computed, self.points)
+            if progress is not silent:
+                forecast.learn_from_samples(self.curves, self.task)
+            done = known + self.found + self.computed + forecast.points_under_way
+            progress(done, self.points, forecast.seconds_left())
+
+        def to_solve() -> Iterator[OpenChunk]:
+            for each in self._open_chunks():
+                if each.number % shares == number - 1 and not self._is_known(each):
+                    forecast.sent(each)
+                    yield each
 
         try:
-            chunks = (each for each in self._open_chunks() if each.number % shares == number - 1)
-            force.solve((each for each in chunks if not self._is_known(each)), self._take, tick)
+            force.solve(to_solve(), self._take, tick)
         finally:
             if self._keeping.kept is not None and not self._keeping.must_keep:
                 self._keeping.kept.trim()
@@ -129,15 +140,19 @@ class Solving:
         if part is not None:
             self._enter(work, part, is_kept)
             self.found += len(work.left)
+            self._forecast.found(work.kind, len(work.left))
         elif key in self._sent:
             self._sent[key].same.append(work)
+            self._forecast.found(work.kind, len(work.left))
         else:
             self._sent |= {key: work} if work.is_whole else {}
             return False
         return True
 
-    def _take(self, work: OpenChunk, parts: list[Part]) -> None:
+    def _take(self, work: OpenChunk, solved: Solved) -> None:
+        parts = solved.parts
         self.computed += len(work.left)
+        self._forecast.came_back(work, solved.seconds)
         self._sent.pop(work.key or "", None)
         if not work.is_whole:
             self._answers[work.number] = parts
@@ -174,4 +189,4 @@ class Solving:
         if not isinstance(found, str):
             return found
         part = None if self._keeping.kept is None else self._keeping.kept.found(found)
-        return [part.moved(cut.rows)] if part is not None else solve_within(cut.chunk(self.task))
+        return [part.moved(cut.rows)] if part is not None else solve_within(cut.chunk(self.task)).parts

@@ -171,7 +171,10 @@ class StudyRun:
         before, tell = self._points, self.ways.progress
         self._points += solving.points
         with workforce(self.ways.executor) as force:
-            stopped = solving.solve_or_say_why_not(force, lambda done, of: tell(before + done, before + of))
+            stopped = solving.solve_or_say_why_not(
+                force,
+                (silent if tell is silent else lambda done, of, left: tell(before + done, before + of, left)),
+            )
         self._computed += solving.computed
         self._found += solving.found
         return solving, stopped

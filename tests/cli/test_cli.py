@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -459,10 +460,7 @@ def test_a_bug_of_ours_is_code_1_with_a_traceback_and_a_plea(frictionlab: Any, m
     assert "please report" in said.err
 
 
-def test_a_check_tells_curves_points_models_refusals_and_cost_and_computes_nothing(
-    frictionlab: Any, monkeypatch: Any
-) -> None:
-    monkeypatch.setattr(Fake, "solve", lambda *_: pytest.fail("computed"))
+def test_a_check_tells_curves_points_models_refusals_and_time_and_keeps_nothing(frictionlab: Any) -> None:
     grid = {"scene.belt_speed": POINTS, "scene.damping_ratio": [0.1, 0.2]}
     said = frictionlab("check", study(methods=["fake", "auto"], sweep=grid))
 
@@ -471,8 +469,9 @@ def test_a_check_tells_curves_points_models_refusals_and_cost_and_computes_nothi
     assert "2 refused: thirteen, of all numbers" in said.out
     assert "8 by exact (" in said.out
     assert "2 of 2 curves lack points for a measure of shape; add belt speeds " in said.out
-    assert "about 1.5 s of kernel time" in said.out
-    assert "not counted: kernels that this machine has not kept yet" in said.out
+    assert re.search(
+        r"about \d+ s on \d+ cores, \S+ s of it to solve, as measured on \d+ of 16 points", said.out
+    )
     assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
 
 
@@ -480,7 +479,8 @@ def test_a_check_in_json_is_a_record_per_law_and_method(frictionlab: Any) -> Non
     (first, second) = json.loads(frictionlab("check", study(methods=["fake", "auto"]), "--json").out)
 
     assert (first["study"], first["law"], first["method"]) == ("study", "coulomb", "fake")
-    assert (first["points"], first["curves"], first["seconds"]) == (4, 1, 0.75)
+    assert (first["points"], first["curves"]) == (4, 1)
+    assert 0.0 < first["seconds"] < 1.0
     assert first["refused"] == {"thirteen, of all numbers": 1}
     assert list(second["models"].values()) == [4]
 

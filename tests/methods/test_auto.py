@@ -80,14 +80,6 @@ def test_one_method_solves_a_whole_curve_even_where_a_cheaper_one_would_do(name)
     assert {type(Auto().choice(make(v), LAW)[0]) for v in (0.0, *SPEEDS)} == {method}
 
 
-def test_methods_are_tried_by_cost_and_auto_costs_what_its_choice_costs():
-    one = scene(5.0)
-    costs = [method.cost(one, LAW, 1e-9) for method in METHODS_BY_COST]
-    assert costs == sorted(costs)
-    assert Auto().cost(one, LAW, 1e-9) == costs[0]
-    assert Auto().cost(scene(5.0, 10.0), LAW, 1e-9) == Shooting().cost(scene(5.0, 10.0), LAW, 1e-9)
-
-
 def test_an_answer_above_the_tolerance_has_failed_with_both_numbers_in_the_reason():
     scenes = [scene(v, 10.0) for v in (5.0, 20.0)]
     answers, direct = with_columns(Auto(), scenes, LAW, 1e-16), with_columns(Shooting(), scenes, LAW, 1e-16)
@@ -106,7 +98,6 @@ def test_a_scene_no_method_accepts_is_refused_with_every_reason():
         refusal = Auto().refusal(one, Remembers())
         for method in METHODS_BY_COST:
             assert method.refusal(one, Remembers()) in refusal
-        assert Auto().cost(one, Remembers(), 1e-8) == 0.0
 
 
 @pytest.mark.parametrize(

@@ -330,7 +330,7 @@ def test_no_method_is_loaded_where_every_point_is_finished(tmp_path: Path, monke
 def test_a_run_that_dies_loses_nothing_that_came_back(tmp_path: Path) -> None:
     slow, came = study(methods=[{"kind": "fake", "pause": 0.12}], sweep=MANY), [0]
 
-    def die(done: int, total: int) -> None:
+    def die(done: int, total: int, _left: float) -> None:
         assert total == 800
         came[0] = done
         if done:
@@ -345,7 +345,7 @@ def test_a_run_that_dies_loses_nothing_that_came_back(tmp_path: Path) -> None:
 
 
 def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(tmp_path: Path) -> None:
-    def stop(done: int, total: int) -> None:
+    def stop(done: int, total: int, _left: float) -> None:
         if done:
             raise KeyboardInterrupt
 

@@ -207,7 +207,7 @@ def test_what_a_killed_process_began_to_keep_is_removed(tmp_path: Path) -> None:
 
 
 def test_a_killed_run_goes_on_from_its_chunks(tmp_path: Path) -> None:
-    def dies(done: int, total: int) -> None:
+    def dies(done: int, total: int, _left: float) -> None:
         if done:
             raise MemoryError
 

@@ -144,7 +144,7 @@ def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
 
 
 def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Path) -> None:
-    def stop(done: int, total: int) -> None:
+    def stop(done: int, total: int, _left: float) -> None:
         if done:
             raise KeyboardInterrupt
 

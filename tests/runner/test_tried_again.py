@@ -84,7 +84,7 @@ def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
 def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed(
     trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def dies(done: int, total: int) -> None:
+    def dies(done: int, total: int, _left: float) -> None:
         raise MemoryError
 
     trouble({4.0: breaks_down})

@@ -239,11 +239,6 @@ def test_every_law_and_method_plans_an_answer_or_a_reason(scene: dict[str, Any])
     reasons = [case.method.refusal(case.scene, case.law) for case in cases]
 
     assert all(reason is None or reason.strip() for reason in reasons)
-    assert all(
-        case.method.cost(case.scene, case.law, 1e-6) > 0
-        for case, reason in zip(cases, reasons, strict=True)
-        if reason is None
-    )
 
 
 # What is listed and documented

@@ -33,8 +33,6 @@ EVENTS = "closed-form legs of slip and stick between events, fixed point of the 
 REDUCED = (
     " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
 )
-PROOF = 3e-3
-"""Of a point [s]."""
 SALTATION = 1e-8
 """Error of multipliers carried through events, absolute or of those above one: rounding, much more than is seen."""
 FARTHEST = np.finfo(np.float64).max
@@ -131,13 +129,6 @@ class Exact(Method):
 
             answers = certified(answers, scenes, law)
         return answers
-
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """A few period maps of two legs or more, more with corners; slow drives meet the free motion many times."""
-        if scene.degrees_of_freedom == 0:
-            return 1e-3
-        share = 1.0 if scene.is_harmonic else 3.0 * scene.periods
-        return (PROOF * self.certify + 1e-5 * share) * max(1.0, 0.3 / scene.frequency)
 
 
 class _Curve:

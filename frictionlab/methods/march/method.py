@@ -9,11 +9,11 @@ from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive
 from frictionlab.methods.base import Answers, Method
-from frictionlab.methods.march.error import WORK, Plan
+from frictionlab.methods.march.error import Plan
 from frictionlab.methods.march.judge import MarchedPoint, answers_of
 from frictionlab.methods.march.refusal import Request, reasons_against
-from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.march.steppers import STEPPERS, StepperName, steppers_of
+from frictionlab.methods.under_way import each_told
 from frictionlab.scene.scene import Scene
 
 
@@ -31,9 +31,6 @@ def _half_or_one(given: object) -> object:
 
 Theta = Annotated[float, BeforeValidator(_half_or_one)]
 Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
-
-STEP_SECONDS = {"none": 5e-8, "bristle": 1e-7, "deflections": 3e-7, "scalars": 3e-7}
-"""Of one step, by what the law remembers; for planning."""
 
 
 class March(Method):
@@ -101,24 +98,12 @@ class March(Method):
         known: list[StepperName] = [*steppers_of(law.memory_kind), "moreau"]
         return self.stepper or known[0]
 
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """Some twenty periods of 50 ns steps, errors falling as one over their number; at most what WORK takes."""
-        if STEPPERS[self._stepper(law)].adaptive:
-            return 0.05
-        if law.count() > 0:
-            assert scene.normal_load is not None
-            fewest = fewest_steps(scene, law.under_load(scene.normal_load), STEPPERS[self._stepper(law)])
-            steps = min(30.0 * max(4.0 * (self.steps or 4096), 2.0 * fewest), WORK)
-            return STEP_SECONDS[law.memory_kind] * steps
-        steps = 4.0 * self.steps if self.steps else 2.0 * law.sliding_friction(1.0) / tolerance
-        return STEP_SECONDS["none"] * min(30.0 * steps, WORK)
-
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer each scene by itself, from its own start."""
         assert scenes[0].normal_load is not None
         law = law.under_load(scenes[0].normal_load)
         plan = self._plan(law)
-        return answers_of([MarchedPoint(scene, law, tolerance, plan) for scene in scenes])
+        return answers_of([MarchedPoint(scene, law, tolerance, plan) for scene in each_told(scenes)])
 
     def _plan(self, law: FrictionLaw) -> Plan:
         theta, stepper = self.theta or 0.5, self._stepper(law)

@@ -1,4 +1,4 @@
-"""The kinds of period maps, by what a law remembers: what each takes, how fine it is, and what is said of it."""
+"""The kinds of period maps, by what a law remembers: how fine each is, and what is said of it."""
 
 from __future__ import annotations
 
@@ -7,51 +7,25 @@ from typing import NamedTuple
 from frictionlab.laws.base import FrictionLaw
 
 
-class Cost(NamedTuple):
-    """Seconds a point on the line and in the plane at a tolerance; steps grow with its inverse to a power."""
-
-    line: float
-    plane: float
-    tolerance: float
-    power: float
-
-    def seconds(self, planar: bool, tolerance: float) -> float:
-        """Of a point at a tolerance."""
-        return (self.plane if planar else self.line) * (self.tolerance / tolerance) ** self.power
-
-
 class MapKind(NamedTuple):
     """What is known of a kind of map.
 
-    said: of how it is computed, in ``model``. cost: of a point by ``shooting``. rough: accuracy of the maps that
-    follow a transient: with memory they are of lower order. finest: tolerance on the mean of maps that are
-    differentiated; noise: what steps chosen otherwise change in them, relative to the size of a state.
+    said: of how it is computed, in ``model``. rough: accuracy of the maps that follow a transient: with memory they
+    are of lower order. finest: tolerance on the mean of maps that are differentiated; noise: what steps chosen
+    otherwise change in them, relative to the size of a state.
     """
 
     said: str
-    cost: Cost
     rough: float
     finest: float = 1e-10
     noise: float = 2e-12
 
 
-_OF_MEMORY = MapKind(
-    "; mass and memory solved together (Rodas5P)", Cost(2e-2, 2e-1, tolerance=1e-6, power=0.2), rough=1e-7
-)
+_OF_MEMORY = MapKind("; mass and memory solved together (Rodas5P)", rough=1e-7)
 MAP_KINDS = {
-    "none": MapKind("", Cost(1e-4, 3e-4, tolerance=1e-9, power=0.125), 1e-9, finest=1e-12, noise=1e-14),
-    "exact path": MapKind(
-        "; deflection as a function of the slip path",
-        Cost(1e-3, 1e-3, tolerance=1e-9, power=0.125),
-        rough=1e-6,
-        finest=1e-12,
-        noise=1e-14,
-    ),
-    "bristle": MapKind(
-        "; mass and bristle solved together (Rodas5P)",
-        Cost(1e-2, 5e-2, tolerance=1e-6, power=0.2),
-        rough=1e-6,
-    ),
+    "none": MapKind("", 1e-9, finest=1e-12, noise=1e-14),
+    "exact path": MapKind("; deflection as a function of the slip path", 1e-6, finest=1e-12, noise=1e-14),
+    "bristle": MapKind("; mass and bristle solved together (Rodas5P)", rough=1e-6),
     "deflections": _OF_MEMORY,
     "scalars": _OF_MEMORY,
 }

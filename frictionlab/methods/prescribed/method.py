@@ -18,6 +18,7 @@ from frictionlab.methods.prescribed.memory import MemoryPoint
 from frictionlab.methods.prescribed.varying_axes import AxesPoint
 from frictionlab.methods.prescribed.varying_legs import LegsPoint
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
+from frictionlab.methods.under_way import each_told
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.saturation import saturates
 
@@ -68,7 +69,7 @@ def _told_uniqueness(row: Point) -> str:
 
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
-    rows = [_point(scene, law, tolerance) for scene in scenes]
+    rows = [_point(scene, law, tolerance) for scene in each_told(scenes)]
     for row in rows:
         if row.status == "ok" and row.found.error > tolerance:
             row.reason = f"error {row.found.error:.1e} above the tolerance: only rounding errors remain"

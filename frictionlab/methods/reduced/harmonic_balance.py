@@ -105,17 +105,6 @@ class HarmonicBalance(OfOneModel):
             return switched(scenes, law, self.harmonics, self.tail is not False)
         return modelled_along(scenes, law, EXPLICIT, one_harmonic)
 
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """Root searches on whole arrays; slow drives need more samples to be sure of the reversals.
-
-        With bristles a search for every amplitude that balances, and shooting.
-        """
-        if isinstance(law, BristleLaw):
-            return 4e-2
-        if self._samples(scene, law):
-            return 3e-3 + 1e-5 * self.harmonics**1.5
-        return 1e-5 + 1e-6 * self.harmonics if self.harmonics > 1 else 5e-5 * max(1.0, 1.0 / scene.frequency)
-
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
     """The motion at belt speeds >= 0; from V_lin on, the friction-free one."""

@@ -87,12 +87,6 @@ class Mdsm(OfOneModel):
             return modelled_along(scenes, law, ALONG, _friction_free)
         return _averaged(scenes, law)
 
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """Nearly all of it for the error: the full answer."""
-        if scene.degrees_of_freedom == 0 or not _in_closed_form(scene, law):
-            return 3e-3
-        return 5e-5 * max(1.0, 1.0 / scene.frequency)
-
 
 def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
     return scene.load_along_belt_only and law.constant_sliding_friction()

@@ -34,6 +34,7 @@ from frictionlab.methods.shooting.attractors import (
 )
 from frictionlab.methods.shooting.long_mean import SHARED, spread_of_one_mean
 from frictionlab.methods.shooting.long_motions import average_unrepeated
+from frictionlab.methods.under_way import each_told
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -75,7 +76,7 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
     resting = [i for i in at_rest if stays_at_rest(scenes[i], law)]
     moving = [i for i in range(len(scenes)) if i not in resting]
     states.close_all(moving)
-    for i in moving if not states.problem.goal.contracts else ():
+    for i in each_told(moving) if not states.problem.goal.contracts else ():
         states.check_attraction(i)
     states.carry_on()
     for i in resting:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, FoundState, Method
-from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
+from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
@@ -90,17 +90,6 @@ class Shooting(Method):
         if law.planar_form() == "vectorial" and not along_the_belt(scene, law):
             return law.no_vector_form() or None
         return None
-
-    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """About 0.3 ms in the plane and 0.1 ms on the line at 1e-9; steps grow as tolerance^(-1/8).
-
-        With a bristle, other starts included, 1 ms on the line where the path is exact, else ten times as long and as
-        tolerance^(-1/5), and 50 ms in the plane. With another memory 20 ms on the line and 200 ms in the plane, and
-        as long undriven with any memory.
-        """
-        planar = not scene.load_along_belt_only
-        kind = "deflections" if scene.undriven and law.count() > 0 else map_kind(law, planar)
-        return MAP_KINDS[kind].cost.seconds(planar, tolerance)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""

@@ -42,6 +42,7 @@ from frictionlab.methods.shooting.undriven_path import (
     Span,
     UndrivenPath,
 )
+from frictionlab.methods.under_way import each_told
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track
 from frictionlab.quantities import Floats
@@ -334,7 +335,7 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
     status: list[Status] = ["failed"] * len(scenes)
     reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
     found: dict[int, tuple[Undriven, PeriodicMotion]] = {}
-    for i, scene in enumerate(scenes):
+    for i, scene in enumerate(each_told(scenes)):
         undriven = Undriven(scene, law, tolerance)
         try:
             motion = undriven.motion()

@@ -1,0 +1,49 @@
+"""How far a method is with the points it was given, for those who wait."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import TypeVar
+
+from frictionlab.compile.notice import seconds_compiling
+
+Each = TypeVar("Each")
+
+
+@dataclass(eq=False)
+class UnderWay:
+    """Points answered since it was begun, and the seconds until the last of them, compiling left out.
+
+    Of a method that answers all points together there are none.
+    """
+
+    begun: float
+    points: int = 0
+    seconds: float = 0.0
+
+
+_under_way: ContextVar[UnderWay | None] = ContextVar("under way", default=None)
+
+
+@contextmanager
+def told_to(under_way: UnderWay) -> Iterator[None]:
+    """Meanwhile, in this context, points answered are counted there."""
+    token = _under_way.set(under_way)
+    try:
+        yield
+    finally:
+        _under_way.reset(token)
+
+
+def each_told(points: Iterable[Each]) -> Iterator[Each]:
+    """These points, each counted as answered when the next one is asked for."""
+    now = _under_way.get()
+    for each in points:
+        yield each
+        if now is not None:
+            now.points += 1
+            now.seconds = time.perf_counter() - seconds_compiling() - now.begun

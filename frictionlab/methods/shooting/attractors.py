@@ -44,7 +44,7 @@ class Attractor:
     low, high: the smallest and the largest mean over one drive period. followed: for how many periods. points: states
     at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size]. average: over a
     long time, of all motions on one attractor that never repeat; None where nothing has asked for it. neutral: a
-    motion that repeats, as others beside it do, for it has no damping.
+    motion that repeats, as others beside it do, for it has no damping. stopped: after too many steps.
     """
 
     followed: int
@@ -55,6 +55,7 @@ class Attractor:
     points: Floats
     average: LongMean | None = None
     neutral: bool = False
+    stopped: bool = False
 
     def agrees(self, other: Attractor) -> bool:
         """Whether both have the same mean friction, for the same reason."""
@@ -219,10 +220,7 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
     first, more = all_starts(problem, scene)
     for start in first:
         # motions of too many steps have no mean; a second one is followed for what else there is
-        if (
-            sum(one.curve is None and one.followed < FEWEST and not one.neutral for one in followed.reached)
-            < 2
-        ):
+        if sum(one.stopped for one in followed.reached) < 2:
             followed.follow(start)
     for start in more:
         if not followed.one_orbit():
@@ -359,7 +357,8 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
             return Attractor(len(way.means), 0, *ends, None, points, neutral=True), seconds
     last = way.means[len(way.means) // 2 :]
     low, high = float(last.min()), float(last.max())
-    return Attractor(len(way.means), 0, low, high, None, way.states[-POINTS_KEPT:]), seconds
+    stopped = way.period == 0 and len(way.means) < FEWEST
+    return Attractor(len(way.means), 0, low, high, None, way.states[-POINTS_KEPT:], stopped=stopped), seconds
 
 
 def undamped(scene: Scene) -> bool:

@@ -19,7 +19,6 @@ from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
-    FEWEST,
     MOST,
     Attractor,
     FollowedStarts,
@@ -377,7 +376,7 @@ class SteadyStates:
             and i not in self.repelling
             and all(one.curve is None and one.average is None for one in reached)
         ):
-            stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""
+            stopped = STOPPED if all(one.stopped for one in reached) else ""
             self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
             return
         lags = (

@@ -7,13 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
-from frictionlab.methods.shooting.attractors import (
-    FEWEST,
-    POINTS_KEPT,
-    Attractor,
-    FollowedStarts,
-    orbit_at_the_end,
-)
+from frictionlab.methods.shooting.attractors import POINTS_KEPT, Attractor, FollowedStarts, orbit_at_the_end
 from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -69,7 +63,7 @@ class LongMotion:
     @property
     def may_go_on(self) -> bool:
         """Whether it has no end yet, and its steps were not too many for the periods asked for before."""
-        stopped = self.start.followed < FEWEST or 0 < len(self.means) < FEWEST_AVERAGED
+        stopped = self.start.stopped or 0 < len(self.means) < FEWEST_AVERAGED
         return self.end is None and not stopped
 
     @property

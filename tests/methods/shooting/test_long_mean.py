@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem
@@ -166,3 +167,21 @@ def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():
     assert found[0].error == pytest.approx(1e-15 + 2.0 * motion.off_by_maps())
     assert 0.0 < motion.off_by_maps() < 1e-5
     assert found[2] is wild
+
+
+@deep("chaos of a stiff bristle takes many steps")
+def test_a_start_that_passes_by_an_orbit_which_repels_is_followed_on_to_its_long_mean():
+    changing = fl.DimensionalNormalLoadVariation(amplitude=0.5, frequency="40 kHz", contact="constant")
+    tip = fl.Dimensional(
+        mass="1e-11 kg",
+        stiffness="1 N/m",
+        damping_ratio=0.01,
+        normal_load="10 nN",
+        belt_speed="1 um/s",
+        normal_load_variation=changing,
+    )
+    state = fl.steady_state(fl.Scene(dimensional=tip), fl.Dahl(mu=0.1, presliding_length=0.3e-9))
+
+    assert state.status == "ok"
+    assert "chaotic" in state.reason
+    assert 0.05 < state.mean_friction < 0.055

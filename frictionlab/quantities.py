@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import dataclass
+from functools import cache
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -290,3 +291,23 @@ def given_values(record: Record) -> dict[str, Any]:
     """Nested plain values that were given for a record, whether or not they are valid."""
     held = {name: value for name, value in vars(record).items() if name in record.model_fields_set}
     return {name: given_values(value) if isinstance(value, Record) else value for name, value in held.items()}
+
+
+@cache
+def dimensions(record: type[Record]) -> dict[str, Dimension]:
+    """The dimension of every field of a record that has one."""
+    found = {
+        name: _dimension(field.annotation, field.metadata) for name, field in record.model_fields.items()
+    }
+    return {name: dimension for name, dimension in found.items() if dimension is not None}
+
+
+def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
+    """The ``Dimension`` in the annotation of a type, or of one of the alternatives of an optional type."""
+    for mark in metadata:
+        if isinstance(mark, Dimension):
+            return mark
+    inner = (
+        _dimension(None, kind.__metadata__) for kind in get_args(annotation) if hasattr(kind, "__metadata__")
+    )
+    return next((dimension for dimension in inner if dimension is not None), None)

@@ -29,7 +29,7 @@ ARROWS = {
         "quantities": "mistakes",
         "columns": "",
         "units": "columns mistakes quantities",
-        "laws": "quantities",
+        "laws": "quantities units",
         "faults": "laws",
         "compile": "faults laws",
         "scene": "mistakes quantities units",

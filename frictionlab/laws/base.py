@@ -12,9 +12,21 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar, Literal, Self
 
+from pydantic import model_validator
+
 from frictionlab.laws.arrays import accept_arrays
 from frictionlab.laws.labelled import Labelled
-from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
+from frictionlab.quantities import (
+    Dimension,
+    Finite,
+    NonNegative,
+    PerSpeed,
+    Positive,
+    Record,
+    Speed,
+    dimensions,
+)
+from frictionlab.units.text import in_units_of_law, unit_of_dimension
 
 __all__ = [
     "Dimension",
@@ -43,6 +55,9 @@ class FrictionLaw(Labelled, ABC):
     deflections or scalars; no method solves a law that declares none of them. ``compliant``: whether one bristle has
     a stiffness and a presliding length.
 
+    In a scene in SI units its numbers are in them, and may be text with a unit: ``fl.Dahl(mu=0.3,
+    presliding_length="1 um")``.
+
     >>> import frictionlab as fl
     >>> isinstance(fl.Dahl(mu=0.4, stiffness=40), fl.FrictionLaw)
     True
@@ -63,6 +78,16 @@ class FrictionLaw(Labelled, ABC):
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         accept_arrays(cls)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _texts_with_units(cls, data: Any) -> Any:
+        """Numbers in SI units in the place of texts such as ``1 um``."""
+        if not isinstance(data, Mapping) or not any(isinstance(value, str) for value in data.values()):
+            return data
+        units = {name: unit_of_dimension(each) for name, each in dimensions(cls).items()}
+        texts = {name: value for name, value in data.items() if name in units and isinstance(value, str)}
+        return {**data, **{name: in_units_of_law(text, name, units) for name, text in texts.items()}}
 
     @classmethod
     def _in_order(cls) -> list[str]:

@@ -18,6 +18,7 @@ from frictionlab.mistakes.notes import (
     Note,
     Notes,
     Path,
+    Unfit,
     WrongValues,
     closest,
     did_you_mean,
@@ -314,6 +315,7 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     wanted = next((what for start, what in _WANTED.items() if error["type"].startswith(start)), None)
     message = _message(error) if wanted is None else f"must be {wanted}"
     if message.startswith("must be "):
-        with_unit = message == "must be a number" and _WITH_UNIT.fullmatch(str(error["input"]))
+        value = error["input"].given if isinstance(error["input"], Unfit) else error["input"]
+        with_unit = message == "must be a number" and _WITH_UNIT.fullmatch(str(value))
         return f"{message}, got {given}{_UNITS if with_unit else ''}"
     return message[:1].lower() + message[1:]

@@ -13,13 +13,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from pydantic import model_validator
 
 from frictionlab.mistakes.notes import Unfit
-from frictionlab.quantities import Dimension
 from frictionlab.scene.parts import ScenePart
 from frictionlab.units.text import in_units, quantity_in
 
 _SUFFIX = re.compile(r"_(N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|kg_m|kg|N|m|J|s)$")
 """What the key of a number, or the name of a result, ends in: its unit."""
-_BASE = {"force": "N", "length": "m", "time": "s"}
 _WITHOUT_SUFFIX = {"phase": "deg", "direction": "deg", "amplitude": "", "damping_ratio": ""}
 """The units of the other numbers."""
 
@@ -69,18 +67,6 @@ def unit_of(name: str) -> str | None:
     if not found:
         return _WITHOUT_SUFFIX.get(name)
     return re.sub(r"(?<=[a-z])(\d)", r"^\1", found[1].replace("_per_", "/").replace("_", " "))
-
-
-def unit_of_dimension(dimension: Dimension) -> str:
-    """The unit of a number with this dimension."""
-    powers = [(unit, getattr(dimension, name)) for name, unit in _BASE.items()]
-    over = " ".join(_power(unit, power) for unit, power in powers if power > 0)
-    under = [_power(unit, -power) for unit, power in powers if power < 0]
-    return "/".join([over or ("1" if under else ""), *under])
-
-
-def _power(unit: str, power: int) -> str:
-    return unit if power == 1 else f"{unit}^{power}"
 
 
 def in_si(key: str, name: str, value: Any) -> Any:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive, given_values
+from frictionlab.quantities import Finite, NonNegative, Positive, dimensions, given_values
 from frictionlab.scene.as_written import AsWritten
 from frictionlab.scene.changed import changed
 from frictionlab.scene.parts import (
@@ -41,7 +41,7 @@ from frictionlab.scene.springs_in_si import (
     time_of,
     velocity_of,
 )
-from frictionlab.scene.units import SUFFIXES, Units, dimensions
+from frictionlab.scene.units import SUFFIXES, Units
 from frictionlab.scene.waveforms import SINE
 
 STANDARD_GRAVITY = 9.81

@@ -7,10 +7,10 @@ K_1 L, and from these velocity omega_1 L and energy K_1 L^2. L is any length: no
 from __future__ import annotations
 
 import math
-from functools import cache, lru_cache
-from typing import Any, NamedTuple, TypeVar, get_args
+from functools import lru_cache
+from typing import Any, NamedTuple, TypeVar
 
-from frictionlab.quantities import Dimension, Record
+from frictionlab.quantities import Dimension, Record, dimensions
 
 LENGTH, VELOCITY, FREQUENCY = Dimension(length=1), Dimension(length=1, time=-1), Dimension(time=-1)
 FORCE, UNBALANCE = Dimension(force=1), Dimension(force=1, time=2)
@@ -58,26 +58,6 @@ class Units(NamedTuple):
         if dimension == FREQUENCY:
             return value * self.time
         return value / (self.velocity if dimension == VELOCITY else self.of(dimension))
-
-
-@cache
-def dimensions(record: type[Record]) -> dict[str, Dimension]:
-    """The dimension of every field of a record that has one."""
-    found = {
-        name: _dimension(field.annotation, field.metadata) for name, field in record.model_fields.items()
-    }
-    return {name: dimension for name, dimension in found.items() if dimension is not None}
-
-
-def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
-    """The ``Dimension`` in the annotation of a type, or of one of the alternatives of an optional type."""
-    for mark in metadata:
-        if isinstance(mark, Dimension):
-            return mark
-    inner = (
-        _dimension(None, kind.__metadata__) for kind in get_args(annotation) if hasattr(kind, "__metadata__")
-    )
-    return next((dimension for dimension in inner if dimension is not None), None)
 
 
 def scaled_parameters(record: Record, scales: Units) -> dict[str, float | tuple[float, ...]]:

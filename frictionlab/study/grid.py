@@ -17,6 +17,7 @@ from frictionlab import columns
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import Mistake, StudyError
+from frictionlab.quantities import Written
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.units import Units, scaled_law
@@ -286,5 +287,17 @@ def law_in_scene(law: FrictionLaw, scene: Scene) -> FrictionLaw:
 def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None) -> FrictionLaw:
     """A law converted to these scales and to unit normal load."""
     assert normal_load is not None  # every valid scene has one
+    if scales is None:
+        _refuse_units(law)
     scaled = law if scales is None else scaled_law(law, scales)
     return scaled.under_load(normal_load)
+
+
+def _refuse_units(law: FrictionLaw) -> None:
+    """Raises ValueError for a law with a number that has a unit, which has no meaning in a nondimensional scene."""
+    for name, value in law:
+        if isinstance(value, Written):
+            raise ValueError(
+                f"{type(law).__name__}: {name}: {value.text} has a unit, and the scene is nondimensional: give a "
+                "number in its scales, or the scene in SI units, fl.Scene(dimensional=fl.Dimensional(...))"
+            )

@@ -9,8 +9,8 @@ from typing import Any
 from frictionlab import columns, registry
 from frictionlab.mistakes.notes import Notes, Path, StudyError
 from frictionlab.mistakes.validation import build_record, number_paths, value_paths
+from frictionlab.quantities import dimensions
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.units import dimensions
 from frictionlab.study.axes import FRICTION, LINKED, STATIC, GridValue
 from frictionlab.study.choices import items, label_of, law_choice, method_choice, note_equal_labels
 from frictionlab.study.expectations import Table, expectations, result_column

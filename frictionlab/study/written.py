@@ -11,11 +11,11 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.mistakes.notes import Unfit
 from frictionlab.mistakes.validation import field_path, number_paths
-from frictionlab.scene.as_written import AsWritten, in_si, unit_of_dimension
+from frictionlab.quantities import Written, dimensions
+from frictionlab.scene.as_written import AsWritten, in_si
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.units import dimensions
 from frictionlab.study.axes import SCENE
-from frictionlab.units.text import in_units
+from frictionlab.units.text import in_units_of_law, unit_of_dimension
 
 
 def column_of(path: str) -> str:
@@ -44,23 +44,20 @@ def number_written(record: type[BaseModel], key: str, name: str, value: Any) -> 
         return value
     if isinstance(value, list):
         return [number_written(record, key, name, each) for each in value]
-    return _of_law(value, name, units) if isinstance(value, str) else value
-
-
-def _of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:
-    """The number of a text; of one that is not per unit normal load, where that belongs."""
-    found, contact = in_units(text, units[name]), f"contact_{name}"
-    if isinstance(found, Unfit) and isinstance(in_units(text, units.get(contact, units[name])), float):
-        return Unfit(text, f"{found.what}; {contact} takes what is not per unit normal load")
-    return found
+    return in_units_of_law(value, name, units) if isinstance(value, str) else value
 
 
 def read_law_numbers(tree: Mapping[str, Any], laws: registry.Laws) -> None:
-    """Put numbers in the place of texts with units in the laws of a study whose scene is in SI units."""
-    given = tree.get("laws")
-    for law in given if isinstance(given, list) and scene_is_in_si(tree) else ():
+    """Put numbers in the place of texts with units in the laws of a study whose scene is in SI units.
+
+    In another study they are marked as what is no number.
+    """
+    given, in_units_of_si = tree.get("laws"), scene_is_in_si(tree)
+    for law in given if isinstance(given, list) else ():
         if isinstance(law, dict) and law.get("kind") in laws.usable():
             kind = laws.named(law["kind"])
-            law |= {
-                name: number_written(kind, name, name, law[name]) for name in law.keys() & units_of_law(kind)
-            }
+            for name in law.keys() & units_of_law(kind):
+                if in_units_of_si:
+                    law[name] = number_written(kind, name, name, law[name])
+                elif isinstance(law[name], str | Written):
+                    law[name] = Unfit(getattr(law[name], "text", law[name]), "must be a number")

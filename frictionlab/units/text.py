@@ -7,12 +7,13 @@ it an angle has a dimension, so that 60 Hz are 60 cycles a second and never 60 r
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
 from frictionlab.mistakes.notes import Unfit
-from frictionlab.quantities import Written
+from frictionlab.quantities import Dimension, Written
 
 DEFINITIONS = """
 nano- = 1e-9 = n-
@@ -51,6 +52,7 @@ _TEXT = re.compile(
     rf"\s*(?P<number>{NUMBER})\s*(?P<unit>(?:1?\s*/\s*)?{_FACTOR}(?:\s*[*·/]\s*{_FACTOR}|\s+{_FACTOR})*)\s*"
 )
 _POWER = re.compile(r"(?<=[^\W\d_]|%|°)(?:\^|\*\*)?(-?[1-9])")
+_BASE = {"force": "N", "length": "m", "time": "s"}
 _PLAIN = str.maketrans("⁻¹²³·", "-123*")
 
 
@@ -102,6 +104,29 @@ def in_units(text: str, unit: str) -> float | Unfit:
         return Unfit(text, f"'{text.strip()}' {problem}")
     except OverflowError:
         return Unfit(text, "must be a finite number")
+
+
+def in_units_of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:
+    """The number of a text for a parameter of a law; of one that is not per unit normal load, where that belongs.
+
+    units: of all its parameters.
+    """
+    found, contact = in_units(text, units[name]), f"contact_{name}"
+    if isinstance(found, Unfit) and isinstance(in_units(text, units.get(contact, units[name])), float):
+        return Unfit(text, f"{found.what}; {contact} takes what is not per unit normal load")
+    return found
+
+
+def unit_of_dimension(dimension: Dimension) -> str:
+    """The unit of a number with this dimension."""
+    powers = [(unit, getattr(dimension, name)) for name, unit in _BASE.items()]
+    over = " ".join(_power(unit, power) for unit, power in powers if power > 0)
+    under = [_power(unit, -power) for unit, power in powers if power < 0]
+    return "/".join([over or ("1" if under else ""), *under])
+
+
+def _power(unit: str, power: int) -> str:
+    return unit if power == 1 else f"{unit}^{power}"
 
 
 def quantity_in(unit: str) -> Kind:

@@ -18,8 +18,9 @@ from frictionlab.charts.curves import family_of
 from frictionlab.charts.figures import FigureData
 from frictionlab.columns import SI
 from frictionlab.laws.base import Dimension, Positive, Record
+from frictionlab.quantities import dimensions
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.units import Units, dimensions, scaled_law
+from frictionlab.scene.units import Units, scaled_law
 from frictionlab.study import StudyError, parse_study
 from frictionlab.theory import friction_free_velocity
 

@@ -8,6 +8,7 @@ import pytest
 import ruamel.yaml
 
 import frictionlab as fl
+from frictionlab.mistakes.notes import WrongValues
 from frictionlab.study import StudyError, parse_study
 
 HERE = "scene.dimensional."
@@ -118,3 +119,21 @@ def test_an_override_takes_the_place_of_the_same_value_under_its_other_key() -> 
 
     assert found.scene.values()["dimensional.mass_kg"] == 0.6
     assert found.sweep[f"{HERE}belt_speed_m_per_s"] == (0.001, 0.002)
+
+
+def test_a_law_made_in_python_takes_texts_where_the_scene_has_units() -> None:
+    body = {**BODY, "belt_speed": "5 mm/s", "drive": {"amplitude": "20 N", "frequency": "60 Hz"}}
+    scene = fl.Scene(dimensional=fl.Dimensional(**body))
+    text, number = (fl.Dahl(mu=0.3, presliding_length=each) for each in ("1 um", 1e-6))
+    plain = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+
+    assert text == number
+    means = [fl.steady_state(scene, law).mean_friction for law in (text, number)]
+    assert means[0] == means[1] > 0.0
+    assert "presliding_length: 1 um" in fl.Study.of(scene, text).to_yaml()
+    with pytest.raises(ValueError, match="1 um has a unit, and the scene is nondimensional"):
+        fl.steady_state(plain, text)
+    with pytest.raises(StudyError, match="must be a number, got the text '1 um'"):
+        fl.Study.of(plain, text)
+    with pytest.raises(WrongValues, match=r"stiffness: .* contact_stiffness takes what is not per unit"):
+        fl.Dahl(mu=0.3, stiffness="5 N/um")

@@ -23,9 +23,10 @@ from frictionlab.charts.curves import family_of
 from frictionlab.columns import SCALED, word
 from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.memory import BristleLaw
+from frictionlab.quantities import dimensions
 from frictionlab.registry.records import law_record
 from frictionlab.results.curve_table import curve_table
-from frictionlab.scene.units import Units, dimensions
+from frictionlab.scene.units import Units
 from frictionlab.shape.shakedown import Shakedown, shakedown_of_body, shakedown_of_slip
 from frictionlab.shape.verdict import UnreadableCurve
 from frictionlab.study import StudyError, parse_study

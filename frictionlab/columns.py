@@ -324,7 +324,7 @@ ONSETS: dict[str, str] = {
 
 ATTRACTORS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",
-    "attractor": "number of the state at this belt speed, from 1",
+    "state": "its number at this belt speed, from 1",
     "period": "in drive periods, up to 255; 0 for a motion that does not repeat within so many",
     "mean_friction": "mean over the whole period, or over a long time where it does not repeat",
     "error": "bound on its error; two standard errors where it does not repeat",
@@ -337,7 +337,9 @@ ATTRACTORS: dict[str, str] = {
     "velocity": "x1' then",
     "found_from": "a start by its number, the search for a closed orbit, or the neighbour the state was carried from",
 }
-"""The columns of the table of attractors after the inputs, one row per Poincare point."""
+"""The columns of the table of attractors after the inputs, one row per Poincare point where a study keeps them."""
+OF_STATES = tuple(name for name in ATTRACTORS if name not in ("point", "x", "velocity", "found_from"))
+"""Those of the states of points that have several."""
 
 HARMONICS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",

@@ -42,7 +42,9 @@ DOTS: Any = {"marker": "o", "markersize": 0.9, "mew": 0.0, "ls": "none", "color"
 
 
 def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """The rows of each figure, by its name: one for every curve on which anything was found."""
+    """The rows of each figure, by its name: one for every curve on which anything was found, with its points."""
+    if "point" not in attractors:
+        return {}
     inputs = [name for name in attractors.columns if name in INPUTS or name.startswith(("scene.", "law."))]
     curves = [rows for _, rows in attractors.groupby(inputs, sort=False, dropna=False)] if inputs else []
     if len(curves) == 1:

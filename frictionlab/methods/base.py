@@ -27,6 +27,11 @@ def no_orbit(i: int) -> None:
     """Of answers without orbits."""
 
 
+def no_states(i: int) -> list[FoundState]:
+    """Of answers that know of no other states."""
+    return []
+
+
 class Multipliers(NamedTuple):
     """Of each scene the largest modulus of its Floquet multipliers and the bound on its error, NaN where not known.
 
@@ -48,6 +53,7 @@ class Answers:
     floquet(): largest modulus of the multipliers of each, found when asked for, as closely as the method needs it;
     multipliers(): as the table tells it, with its error; left out, floquet() is told. orbit(i): the orbit of scene i,
     made when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
+    states(i): where a state is not unique, those that its starts reached.
     unique: of ok answers PROVED, with the theorem in their model, TESTED, with the starts in their reason, NOT_UNIQUE
     of a state that only scene.initial chooses, or '' where nothing was asked; left out where nothing ever is.
     balanced: whether orbits obey the equation of motion but for numerical errors; energies of others have no errors.
@@ -69,6 +75,7 @@ class Answers:
     unique: Sequence[str] | None = None
     orbit: Callable[[int], Orbit | None] = field(default=no_orbit, repr=False)
     orbits: Callable[[], Orbits] | None = field(default=None, repr=False)
+    states: Callable[[int], list[FoundState]] = field(default=no_states, repr=False)
     balanced: bool = True
 
 

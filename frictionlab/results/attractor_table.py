@@ -1,4 +1,7 @@
-"""The table of attractors: every state that motions end in along the curves of a study, a row per Poincare point."""
+"""The table of attractors: every state that motions end in along the curves of a study, a row per Poincare point.
+
+Of a study that does not ask for it, a row per state of the points that have several.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import ALSO_IN_SI, ATTRACTORS
+from frictionlab.columns import ALSO_IN_SI, ATTRACTORS, BELT_SPEED, OF_STATES
 from frictionlab.methods.base import STATISTICAL, FoundState
 from frictionlab.results.curve_table import curve_inputs
 from frictionlab.results.derived import beside_in_si
+from frictionlab.results.part import KeptRows
 from frictionlab.results.table import Inputs, inputs, scales_of_row
 from frictionlab.study import StudyCurve
 
@@ -24,6 +28,32 @@ def attractor_table(curves: Sequence[StudyCurve], tolerance: float, starts: int)
     rows = [row for curve in curves for row in _rows(curve, given, keys, tolerance, starts)]
     in_si = [ALSO_IN_SI[name][0] for name in ATTRACTORS if name in ALSO_IN_SI and given.scales is not None]
     return pd.DataFrame(rows, columns=[*keys, *ATTRACTORS, *in_si])
+
+
+def states_table(given: Inputs, states: KeptRows) -> pd.DataFrame:
+    """Of points that have several states a row each; states: by row of the result table."""
+    keys = curve_inputs(given.columns)
+    frames = []
+    for row, columns in sorted(states.items()):
+        head = {name: given.columns[name][row] for name in keys}
+        numbers = np.arange(1, 1 + len(columns["period"]))
+        kinds = map(_error_kind, columns["error"].tolist(), columns["period"].tolist())
+        own = {
+            "belt_speed": given.columns[BELT_SPEED][row],
+            "state": numbers,
+            "error_kind": [*kinds],
+            **columns,
+        }
+        own["period"] = columns["period"].astype(int)
+        beside = beside_in_si(own, scales_of_row(given, row))
+        frames.append(pd.DataFrame(head | {name: own[name] for name in OF_STATES} | beside))
+    return pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=[*keys, *OF_STATES])
+
+
+def _error_kind(error: float, period: float) -> str:
+    if math.isnan(error):
+        return ""
+    return "estimated" if period else STATISTICAL
 
 
 def _rows(
@@ -46,11 +76,11 @@ def _rows(
 def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, Any]:
     return {
         "belt_speed": speed,
-        "attractor": number,
+        "state": number,
         "period": state.period,
         "mean_friction": state.mean,
         "error": state.error,
-        "error_kind": "" if math.isnan(state.error) else "estimated" if state.period else STATISTICAL,
+        "error_kind": _error_kind(state.error, state.period),
         "share": state.share,
         "mean_low": state.low,
         "mean_high": state.high,

@@ -9,12 +9,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.methods.base import Answers
+from frictionlab.methods.base import Answers, FoundState
 from frictionlab.quantities import Floats
 
 Places = NDArray[np.int64]
 KeptRows = dict[int, dict[str, Floats]]
 """By row of the table, columns of equal length."""
+
+
+def columns_of_states(found: Sequence[FoundState]) -> dict[str, Floats]:
+    """States of one row as columns of numbers."""
+    names = {"period": "period", "mean_friction": "mean", "error": "error", "share": "share"}
+    names |= {"mean_low": "low", "mean_high": "high"}
+    return {name: np.array([getattr(one, field) for one in found], float) for name, field in names.items()}
 
 
 class Piece(NamedTuple):
@@ -28,7 +35,8 @@ class Piece(NamedTuple):
 class Part:
     """Rows of the table, answered: plain data, which may cross to another process.
 
-    kept: what a study keeps beside the table, ``orbits`` and ``harmonics``.
+    kept: what stands beside the table, the ``states`` of points that have several, and what a study keeps, ``orbits``
+    and ``harmonics``.
     """
 
     rows: Places

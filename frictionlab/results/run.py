@@ -21,7 +21,8 @@ class Run:
 
     made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
     its shape; none where belt speed is not swept or the run was stopped. onsets_made: finds the onsets of its curves.
-    attractors: a row per Poincare point of every state that motions end in, None where the study does not keep them.
+    attractors: a row per Poincare point of every state that motions end in, where the study keeps them; else a row
+    per state of the points that have several, None where no point has.
     harmonics: a row per harmonic of every orbit, None where the study does not keep them.
     shown, found: of a table too long to be held, the rows that figures and pages show, and how many of all rows have
     each status.

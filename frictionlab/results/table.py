@@ -252,6 +252,7 @@ def finished_part(
 ) -> Part:
     """The rows of this run that an earlier table has finished, with these columns and their orbits."""
     done = earlier[earlier["status"].isin(FINISHED)]
+    done = done[done["status"] != "not_unique"]  # the table does not tell their states
     names = list(given.columns)
     places = {key: place for place, key in enumerate(_keys(done[name].tolist() for name in names))}
     keys = _keys(given.columns[name].tolist() for name in names)

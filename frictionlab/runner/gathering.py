@@ -11,6 +11,7 @@ import pandas as pd
 
 from frictionlab import registry
 from frictionlab.columns import ALWAYS, OF_SHAPE
+from frictionlab.results.attractor_table import states_table
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.harmonic_table import harmonic_table
 from frictionlab.results.part import KeptRows, Part, Places
@@ -27,7 +28,10 @@ ROWS_AT_ONCE = 10_000
 
 
 class TablePiece(NamedTuple):
-    """Rows of the table that make whole curves. kept: their orbits and harmonics; memories: columns of all orbits."""
+    """Rows of the table that make whole curves.
+
+    kept: their orbits, harmonics and states. memories: the columns of all orbits.
+    """
 
     inputs: Inputs
     first: int
@@ -39,6 +43,11 @@ class TablePiece(NamedTuple):
         """The kept harmonics."""
         own = {row - self.first: found for row, found in self.kept.get("harmonics", {}).items()}
         return harmonic_table(self.inputs, own)
+
+    def states(self) -> pd.DataFrame:
+        """The states of points that have several."""
+        own = {row - self.first: found for row, found in self.kept.get("states", {}).items()}
+        return states_table(self.inputs, own)
 
 
 class GatheredTable:
@@ -55,6 +64,7 @@ class GatheredTable:
         self._counts = Counter[str]()
         self.orbits: pd.DataFrame | None = None
         self.harmonics: pd.DataFrame | None = None
+        self._states: list[pd.DataFrame] = []
 
     def gather(self, solving: Solving, files: TableFiles, laws: registry.Laws, stopped: bool) -> None:
         """Write the table, held in whole or in part. stopped: curves are not read then."""
@@ -70,6 +80,8 @@ class GatheredTable:
                 none = harmonics
             else:
                 files.add_harmonics(harmonics)
+            if piece.kept.get("states"):
+                self._states.append(piece.states())
             if self._shown is None:
                 self.orbits, self.harmonics = orbits, harmonics
             read = piece.results.frame(piece.inputs, names={*OF_SHAPE, *ALWAYS})
@@ -93,6 +105,11 @@ class GatheredTable:
     def table(self) -> pd.DataFrame:
         """The rows that are held."""
         return self._held if self._shown is None else self._shown.table
+
+    @property
+    def states(self) -> pd.DataFrame | None:
+        """Those of points that have several; None where there is no such point."""
+        return pd.concat(self._states, ignore_index=True) if self._states else None
 
     @property
     def counts(self) -> dict[str, int]:

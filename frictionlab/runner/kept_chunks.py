@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import os
 import time
 import zlib
@@ -30,7 +29,7 @@ from frictionlab.runner.files import remove_leftovers, write_whole
 FolderName = str | PathLike[str]
 FOLDER = ".cache"
 USUAL_GIGABYTES = 4.0
-_HEAD = b"frictionlab chunk 3 "
+_HEAD = b"frictionlab chunk 4 "
 _CHECKSUM = 8
 """Letters of a checksum."""
 
@@ -203,20 +202,20 @@ def _unpacked(content: bytes) -> Part | None:
 
 
 def _told_of(rows: KeptRows) -> dict[str, Any]:
-    """The rows of a kept table, its columns, which every row has, and the length of these."""
+    """The rows of a kept table, its columns, which every row has, and the lengths of these in each row."""
     first = next(iter(rows.values()), {})
-    return {"rows": list(rows), "columns": list(first), "length": max(map(len, first.values()), default=0)}
+    lengths = [len(next(iter(columns.values()), ())) for columns in rows.values()]
+    return {"rows": list(rows), "columns": list(first), "lengths": lengths}
 
 
 def _kept_of(told: Mapping[str, dict[str, Any]], numbers: Floats) -> dict[str, KeptRows]:
     kept, start = dict[str, KeptRows](), 0
     for name, one in told.items():
-        shape = len(one["rows"]), len(one["columns"]), one["length"]
-        values = numbers[start : start + math.prod(shape)].reshape(shape)
-        kept[name] = {
-            row: dict(zip(one["columns"], values[k], strict=True)) for k, row in enumerate(one["rows"])
-        }
-        start += values.size
+        names, kept[name] = one["columns"], {}
+        for row, length in zip(one["rows"], one["lengths"], strict=True):
+            values = numbers[start : start + len(names) * length].reshape(len(names), length)
+            kept[name][row] = dict(zip(names, values, strict=True))
+            start += values.size
     return kept
 
 

@@ -121,7 +121,7 @@ class StudyRun:
         done = self._read_run(shown, folder.counts(), folder.read_curves())
         if study.keep_harmonics is not None:
             done = replace(done, harmonics=folder.intact_text(folder.harmonics_file))
-        if study.keep_attractors is not None:
+        if folder.attractors_file.exists():
             done = replace(done, attractors=folder.intact_text(folder.attractors_file))
         done = self._judged(done)
         self._describe(done.counts, done.verdicts, done=True)
@@ -195,7 +195,7 @@ class StudyRun:
             if self._is_long:
                 raise
             unsaved = problem
-        done = self._judged(self._as_run(gathered, stopped), stopped)
+        done = self._judged(replace(self._as_run(gathered, stopped), attractors=gathered.states), stopped)
         try:
             if unsaved is None:
                 self._describe(done.counts, done.verdicts, done=True)
@@ -285,18 +285,18 @@ class StudyRun:
         )
 
     def _with_attractors(self, done: Run, found: pd.DataFrame | None) -> Run:
-        """The run with its attractors, where the study keeps them. Raises Interrupted, UnsavedError."""
-        starts = done.study.keep_attractors
-        if starts is None:
-            return done
+        """The run with its attractors, where the study keeps them, or some points have several.
+
+        Raises Interrupted, UnsavedError.
+        """
+        starts, table = done.study.keep_attractors, done.attractors if found is None else found
         try:
-            table = (
-                attractor_table(list(done.study.curves()), done.study.tolerance, starts)
-                if found is None
-                else found
-            )
+            if starts is not None and found is None:
+                table = attractor_table(list(done.study.curves()), done.study.tolerance, starts)
         except KeyboardInterrupt:
             raise Interrupted(done) from None
+        if table is None:
+            return done
         done = replace(done, attractors=table)
         try:
             if self.folder is not None:

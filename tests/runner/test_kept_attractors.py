@@ -13,7 +13,7 @@ import pytest
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts.bifurcation import bifurcations
-from frictionlab.columns import ATTRACTORS
+from frictionlab.columns import ATTRACTORS, OF_STATES
 from frictionlab.runner import study_run
 
 STUDY = """
@@ -31,6 +31,20 @@ sweep:
 keep: {attractors: 2}
 """
 
+SLIDING_OR_NOT = {
+    "schema": 1,
+    "scene": {
+        "damping_ratio": 0.01,
+        "normal_load": 1,
+        "belt_speed": 0.6,
+        "drive": {"amplitude": 0.05, "frequency": 3},
+    },
+    "laws": [
+        {"kind": "stribeck", "mu_static": 0.8, "mu_kinetic": 0.2, "stribeck_speed": 0.1, "viscosity": 0.01}
+    ],
+    "sweep": {"scene.belt_speed": [0.9, 0.6]},
+}
+
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -47,7 +61,7 @@ def test_every_state_is_a_row_per_point_and_only_of_methods_that_follow_motions(
     assert set(table["method"]) == {"auto"}
     assert "scene.belt_speed" not in table
     assert table["scene.damping_ratio"].unique().tolist() == [0.01]
-    states = table.groupby(["belt_speed", "attractor"])
+    states = table.groupby(["belt_speed", "state"])
     assert states["point"].max().tolist() == states["period"].max().tolist() == [3, 2, 3, 2, 2]
 
 
@@ -80,6 +94,22 @@ def test_the_same_study_takes_them_over(ran: Path, monkeypatch: pytest.MonkeyPat
     assert len(first.attractors) == 12
     fl.run(ran / "study.yaml", ran / "out", ["keep.attractors=3"])
     assert counts == [3]
+
+
+def test_a_point_that_has_several_states_is_a_row_each_without_asking(tmp_path: Path) -> None:
+    first = fl.run(SLIDING_OR_NOT, tmp_path / "out")
+    table = pd.read_csv(tmp_path / "out" / "attractors.csv")
+
+    assert first.table["status"].tolist() == ["not_unique"] * 2
+    assert tuple(table.columns[-len(OF_STATES) :]) == OF_STATES
+    by_speed = table.groupby("belt_speed")
+    assert by_speed["state"].apply(list).tolist() == [[1, 2]] * 2
+    assert by_speed["share"].sum().tolist() == pytest.approx([1.0, 1.0])
+    ends = first.table.set_index("scene.belt_speed").sort_index()[["mean_low", "mean_high"]]
+    assert by_speed["mean_friction"].agg(["min", "max"]).to_numpy() == pytest.approx(ends.to_numpy())
+    again = fl.run(SLIDING_OR_NOT, tmp_path / "beside").attractors  # from the kept chunks
+    assert again is not None
+    assert again["mean_friction"].tolist() == pytest.approx(table["mean_friction"].tolist(), abs=1e-15)
 
 
 def test_each_curve_has_a_figure_of_its_own() -> None:

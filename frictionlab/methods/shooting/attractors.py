@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, largest_modulus
@@ -337,6 +338,22 @@ def _arrived(way: Transient, orbit: Attractor) -> bool:
 
 def _beside(one: Floats, other: Floats) -> bool:
     return bool(np.abs(one - other).max() <= 1e-5 * max(1.0, float(np.abs(other).max())))
+
+
+def same_state(one: Attractor, other: Attractor) -> bool:
+    """Motions that never repeat are not told apart where the mean of one is not known."""
+    unknown = one.period == other.period == 0 and math.isnan(one.mean + other.mean)
+    return one is other or one.agrees(other) or unknown
+
+
+def found_state(
+    problem: PeriodicProblem, place: int, state: Attractor, ended: Sequence[Attractor], found_from: str = ""
+) -> FoundState:
+    """As a table has it. ended: where the starts ended."""
+    x, velocity = problem.positions(state.points)
+    numbers = state.mean, state.error, state.low, state.high
+    share = sum(same_state(state, one) for one in ended) / len(ended)
+    return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from, share)
 
 
 def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:

@@ -13,7 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, STATISTICAL, TESTED, Answers, Multipliers, Status
+from frictionlab.methods.base import (
+    NOT_UNIQUE,
+    PROVED,
+    STATISTICAL,
+    TESTED,
+    Answers,
+    FoundState,
+    Multipliers,
+    Status,
+)
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
@@ -27,8 +36,10 @@ from frictionlab.methods.shooting.attractors import (
     closed_orbit,
     describe,
     follow_all,
+    found_state,
     multiplier,
     quick_starts,
+    same_state,
     undamped,
 )
 from frictionlab.methods.shooting.long_mean import SHARED, spread_of_one_mean
@@ -248,7 +259,17 @@ class SteadyStates:
             seconds=self.seconds,
             orbit=self._orbit,
             orbits=None if STATISTICAL in self.error_kind else self._orbits,
+            states=self._found_states,
         )
+
+    def _found_states(self, i: int) -> list[FoundState]:
+        """Those that the starts reached, each once."""
+        reached = self.followed[i].reached if i in self.followed else []
+        different: list[Attractor] = []
+        for one in reached:
+            if not any(same_state(one, other) for other in different):
+                different.append(one)
+        return [found_state(self.problem, i, one, reached) for one in different]
 
     def _states_by(self, problem: PeriodicProblem, spans: int = 1) -> list[Floats | None]:
         """The states of the orbits of so many spans that one way of solving has found."""

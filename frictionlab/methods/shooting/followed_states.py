@@ -7,7 +7,6 @@ motion alone is followed period after period.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -17,7 +16,14 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts, all_starts, closed_orbit
+from frictionlab.methods.shooting.attractors import (
+    Attractor,
+    FollowedStarts,
+    all_starts,
+    closed_orbit,
+    found_state,
+    same_state,
+)
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -38,19 +44,8 @@ class _Point:
 
     def note(self, reached: Attractor, found_from: str) -> None:
         """Enter the state that a motion ended in, if it is a new one."""
-        if not any(_same(reached, one) for one, _ in self.states):
+        if not any(same_state(reached, one) for one, _ in self.states):
             self.states.append((reached, found_from))
-
-    def share(self, state: Attractor) -> float:
-        """That of the starts that ended in a state."""
-        ended = [_same(state, one) for one in self.ended]
-        return sum(ended) / len(ended)
-
-
-def _same(one: Attractor, other: Attractor) -> bool:
-    """Motions that never repeat are not told apart where the mean of one is not known."""
-    unknown = one.period == other.period == 0 and math.isnan(one.mean + other.mean)
-    return one is other or one.agrees(other) or unknown
 
 
 def follow_states(
@@ -65,7 +60,11 @@ def follow_states(
     points = [_from_starts(problem, i, scene, count) for i, scene in moving]
     _carry(pairwise(points), FROM_BELOW)
     _carry(pairwise(reversed(points)), FROM_ABOVE)
-    return [_found_state(problem, point, state, way) for point in points for state, way in point.states]
+    return [
+        found_state(problem, point.place, state, point.ended, way)
+        for point in points
+        for state, way in point.states
+    ]
 
 
 def _from_starts(problem: PeriodicProblem, place: int, scene: Scene, count: int) -> _Point:
@@ -89,13 +88,6 @@ def _carry(neighbours: Iterable[tuple[_Point, _Point]], found_from: str) -> None
         for state, _ in here.states:
             if there.followed.carry_on(state):
                 there.note(there.followed.reached[-1], found_from)
-
-
-def _found_state(problem: PeriodicProblem, point: _Point, state: Attractor, found_from: str) -> FoundState:
-    x, velocity = problem.positions(state.points)
-    numbers = state.mean, state.error, state.low, state.high
-    period, share = round(state.period * problem.common), point.share(state)
-    return FoundState(point.place, period, *numbers, x, velocity, found_from, share)
 
 
 def follow_motion(scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:

@@ -96,9 +96,9 @@ def test_python_gets_them_as_a_table():
     table = fl.attractors(SCENE, STEEP, [0.5, 0.4, 0.45], starts=2)
 
     assert table["belt_speed"].is_monotonic_increasing
-    assert table.groupby(["belt_speed", "attractor"]).size().tolist() == [3, 2, 3, 2, 2]
+    assert table.groupby(["belt_speed", "state"]).size().tolist() == [3, 2, 3, 2, 2]
     assert (
-        table.groupby(["belt_speed", "attractor"]).size() == table[table["point"] == 1]["period"].tolist()
+        table.groupby(["belt_speed", "state"]).size() == table[table["point"] == 1]["period"].tolist()
     ).all()
     alone = fl.attractors(SCENE, fl.Coulomb(mu=0.4), [0.4])
     mean = fl.steady_state(SCENE, fl.Coulomb(mu=0.4)).mean_friction

@@ -83,11 +83,11 @@ ARROWS = {
         "testing": "compile dynamics faults laws registry scene methods.march methods.shooting",
         "least_model": (
             "charts columns laws mistakes printable quantities registry results runner scene shape study "
-            "methods.reduced theory"
+            "methods.reduced theory units"
         ),
         "cli": (
             "bench charts columns explore faults least_model mistakes printable registry report results "
-            "runner scaffold study testing"
+            "runner scaffold study testing units"
         ),
     }.items()
 }

@@ -12,11 +12,13 @@ import click
 
 from frictionlab.cli import options
 from frictionlab.cli.output import metered, print_records, print_result
+from frictionlab.columns import BELT_SPEEDS
 
 if TYPE_CHECKING:
     from frictionlab.runner.plan import Planned
     from frictionlab.runner.price import Price
     from frictionlab.study import Plugins
+    from frictionlab.units.shown import ShownUnit
 
 
 @click.command("check")
@@ -58,11 +60,16 @@ def check_command(
             ]
         )
     else:
-        lines = [line for name, entries in planned for line in _planned_lines(name, entries)]
+        lines = [
+            line
+            for (name, entries), job in zip(planned, jobs, strict=True)
+            for line in _planned_lines(name, entries, job.study.units.get(BELT_SPEEDS[1]))
+        ]
         print_result("\n".join([*lines, *_price_lines([entries for _, entries in planned], priced, busy)]))
 
 
-def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
+def _planned_lines(name: str, planned: Sequence[Planned], unit: ShownUnit | None) -> list[str]:
+    """What a study will take. unit: of its belt speeds, where they were written with one."""
     lines = [name]
     for entry in planned:
         about = "about " if entry.about else ""
@@ -73,7 +80,9 @@ def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
             which = (
                 f"{entry.shapeless} of {entry.curves} curves lack" if entry.curves > 1 else "the curve lacks"
             )
-            speeds = ", ".join(f"{speed:g}" for speed in entry.add_belt_speeds)
+            speeds = ", ".join(
+                f"{speed:g}" if unit is None else unit.text(speed) for speed in entry.add_belt_speeds
+            )
             lines.append(f"    {which} points for a measure of shape; add belt speeds {speeds}")
     return lines
 

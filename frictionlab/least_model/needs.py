@@ -10,19 +10,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frictionlab import registry
+from frictionlab.columns import BELT_SPEEDS
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.least_model.answers import Curves
 from frictionlab.least_model.lesser import LesserModel
-from frictionlab.least_model.result import Needs, needs_from
+from frictionlab.least_model.result import GivenUnits, Needs, needs_from
 from frictionlab.least_model.search import LeastSearch, each_reason_once
+from frictionlab.quantities import Written
 from frictionlab.results.words import in_words
 from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
+from frictionlab.scene.as_written import without_unit
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 from frictionlab.study.axes import FRICTION
 from frictionlab.study.grid import law_in_scene
 from frictionlab.study.parts import coefficient_of
+from frictionlab.units.shown import ShownUnit, units_written
 
 USUAL_SHARE = 0.01
 """The tolerance on the mean, of the friction of steady sliding at the quickest belt speed, where none is given."""
@@ -32,11 +36,12 @@ ANSWERS_FINER = 1e-3
 
 @dataclass(frozen=True)
 class _Asked:
-    """Laws by name, the registered names of laws of files, and the time a point may take [s]."""
+    """Laws by name, the registered names of laws of files, the time a point may take [s], the unit of belt speeds."""
 
     laws: registry.Laws = registry.INSTALLED_LAWS
     kinds: Mapping[type, str] = field(default_factory=dict)
     seconds_per_point: float = math.inf
+    speed: ShownUnit | None = None
 
 
 def needs(
@@ -60,14 +65,15 @@ def needs(
     si = scene.dimensional
     own = scene.belt_speed if si is None else si.belt_speed_m_per_s
     scenes = Scenes(scene, np.unique(given_speeds(own if belt_speed is None else belt_speed)))
-    return _of_curve(scenes, law, None if within is None else given_tolerance(within, "within"), _Asked())
+    asked = _Asked(speed=units_written({"": own}).get(""))
+    return _of_curve(scenes, law, None if within is None else given_tolerance(within, "within"), asked)
 
 
 def needs_of_study(study: Study, within: float | None = None) -> Iterator[Needs]:
     """The same of every curve of a study, whatever its methods and its tolerance. Raises BrokenPlugin."""
     kinds = {choice.law_class: choice.kind for choice in study.laws}
     laws = registry.Laws({choice.kind: choice.law_class for choice in study.laws})
-    asked = _Asked(laws, kinds, study.seconds_per_point)
+    asked = _Asked(laws, kinds, study.seconds_per_point, study.units.get(BELT_SPEEDS[1]))
     first = study.methods[0].label
     for curve in study.foreseen().curves():
         if curve.method.label != first:
@@ -84,7 +90,9 @@ def _label(study: Study, curve: StudyCurve) -> str:
         owner, _, name = path.rpartition(".")
         inside = path.removeprefix("scene.")
         if path.startswith("scene.") and not name.startswith("belt_speed"):
-            told.append(f"{inside} {in_words(scene.get(inside))}")
+            value = scene.get(inside)
+            brief = without_unit(inside) if isinstance(value, Written) else inside
+            told.append(f"{brief.removeprefix('dimensional.')} {in_words(value)}")
         elif path == FRICTION:
             name = coefficient_of(type(curve.given_law))
             told.append(f"{name} {in_words(law[name])}")
@@ -95,13 +103,15 @@ def _label(study: Study, curve: StudyCurve) -> str:
 
 def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _Asked) -> Needs:
     scene, scenes = scenes.scene, Scenes(scenes.scene, np.unique(scenes.given))
+    si = scene.dimensional
+    units = None if si is None else GivenUnits(si.scales, asked.speed or ShownUnit("m/s"))
     full = LesserModel(scene.model_copy(update={"dimensional": None}), law_in_scene(law, scene))
     quickest = float(np.abs(scenes.belt_speeds).max())
     tolerance = USUAL_SHARE * full.law.sliding_friction(quickest) if within is None else within
     curves = Curves(scenes, ANSWERS_FINER * tolerance, asked.kinds, asked.seconds_per_point)
     answers = curves.of(full)
     if not (answers["status"] == "ok").any():
-        return needs_from(full, answers, [], None, tolerance)
+        return needs_from(full, answers, [], None, tolerance, units)
     search = LeastSearch(full, curves, tolerance, asked.laws)
     singles = search.singles()
     pairs = search.pairs(singles)
@@ -109,4 +119,4 @@ def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _As
     rows = [*each_reason_once(singles), *pairs, *search.whole(singles)]
     if smallest is not None and smallest not in rows:
         rows.append(smallest)
-    return needs_from(full, answers, rows, smallest, tolerance)
+    return needs_from(full, answers, rows, smallest, tolerance, units)

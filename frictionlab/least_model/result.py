@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -14,13 +14,24 @@ from frictionlab.least_model.lesser import LesserModel, MotionWay
 from frictionlab.least_model.motion import FRICTION_FREE, WithoutRest
 from frictionlab.least_model.search import Without
 from frictionlab.printable import with_error
+from frictionlab.quantities import Dimension, dimensions
 from frictionlab.results.words import counted, in_words
+from frictionlab.scene.units import Units
+from frictionlab.units.shown import ShownUnit, handy_unit
+from frictionlab.units.text import unit_of_dimension
 
 WHERE_IT_MOVES = {
     0: "slip prescribed",
     1: "motion along the belt alone",
     2: "motion along and across the belt",
 }
+
+
+class GivenUnits(NamedTuple):
+    """The scales of a scene in SI units, and the unit of its belt speeds."""
+
+    scales: Units
+    speed: ShownUnit
 
 
 @dataclass(frozen=True, repr=False)
@@ -66,19 +77,24 @@ class Needs:
 
 
 def needs_from(
-    full: LesserModel, answers: pd.DataFrame, rows: Sequence[Without], smallest: Without | None, within: float
+    full: LesserModel,
+    answers: pd.DataFrame,
+    rows: Sequence[Without],
+    smallest: Without | None,
+    within: float,
+    units: GivenUnits | None = None,
 ) -> Needs:
     """The result for a full model with these answers. rows: what was taken away, the smallest model among them."""
-    told = [*missing_means(answers), *map(sentence_of, rows)]
+    told = [*missing_means(answers), *(sentence_of(each, units) for each in rows)]
     if (answers["status"] == "ok").any():
-        told.append(smallest_in_words(smallest, full, within))
-    table = pd.DataFrame([_record(each, within, each is smallest) for each in rows], columns=[*NEEDS])
+        told.append(smallest_in_words(smallest, full, within, units))
+    table = pd.DataFrame([_record(each, within, each is smallest, units) for each in rows], columns=[*NEEDS])
     least = full if smallest is None or smallest.model is None else smallest.model
     failed = bool(answers["status"].isin(["failed", "killed"]).any())
     return Needs(table, told, least, failed=failed)
 
 
-def _record(each: Without, within: float, smallest: bool) -> dict[str, Any]:
+def _record(each: Without, within: float, smallest: bool, units: GivenUnits | None) -> dict[str, Any]:
     found = each.change
     return {
         "curve": "",
@@ -93,19 +109,33 @@ def _record(each: Without, within: float, smallest: bool) -> dict[str, Any]:
         "shape": found.shapes[0],
         "shape_without": found.shapes[1],
         "smallest": smallest,
-        "model": "" if each.model is None else model_in_words(each.model),
+        "model": "" if each.model is None else model_in_words(each.model, units),
         "reason": found.reason,
     }
 
 
-def model_in_words(model: LesserModel) -> str:
+def model_in_words(model: LesserModel, units: GivenUnits | None = None) -> str:
     """What a model still has."""
     values = model.law.model_dump(exclude_none=True, mode="json", exclude_defaults=True)
+    if units is not None:
+        values |= {
+            name: _in_si(values[name], each, units.scales)
+            for name, each in dimensions(type(model.law)).items()
+            if name in values
+        }
     told = ", ".join(f"{name} {in_words(value)}" for name, value in values.items())
     way = "" if model.way is None else f", {_way_in_words(model.way)}"
     return (
         f"{WHERE_IT_MOVES[model.scene.degrees_of_freedom]}, {type(model.law).__name__} friction ({told}){way}"
     )
+
+
+def _in_si(value: Any, dimension: Dimension, scales: Units) -> Any:
+    """A number of a law in SI units, in words."""
+    if isinstance(value, list):
+        return [_in_si(each, dimension, scales) for each in value]
+    number, unit = value * scales.of(dimension), unit_of_dimension(dimension)
+    return (ShownUnit(unit) if unit[:1] == "1" else handy_unit(unit, abs(number))).text(number)
 
 
 def _way_in_words(way: MotionWay) -> str:
@@ -116,14 +146,14 @@ def _way_in_words(way: MotionWay) -> str:
     return f"{counted(getattr(way, 'harmonics', 1), 'harmonic')} balanced ({way.name})"
 
 
-def sentence_of(each: Without) -> str:
+def sentence_of(each: Without, units: GivenUnits | None = None) -> str:
     """Whether what is gone is needed, and what the mean changes by without it."""
     names = " and ".join(each.names)
     plural = len(each.names) > 1 or names.startswith("harmonics")
     verb, it = ("are", "them") if plural else ("is", "it")
     if each.change.verdict == "refused":
         return f"{names} cannot be taken away: {each.change.reason}"
-    changes = f"without {it} {_changes(each)}"
+    changes = f"without {it} {_changes(each, units)}"
     if each.change.turns:
         changes += ", its curve from {} to {}".format(*each.change.shapes)
     why = f" ({each.change.reason})" if each.change.reason else ""
@@ -132,19 +162,25 @@ def sentence_of(each: Without) -> str:
     return f"{names} {verb} {each.change.verdict}: {changes}{why}"
 
 
-def smallest_in_words(smallest: Without | None, full: LesserModel, within: float) -> str:
+def smallest_in_words(
+    smallest: Without | None, full: LesserModel, within: float, units: GivenUnits | None = None
+) -> str:
     """The smallest model, what it is without, and what that changes."""
     if smallest is None or smallest.model is None:
-        return f"the smallest model within {within:.3g} is the full one: {model_in_words(full)}"
+        return f"the smallest model within {within:.3g} is the full one: {model_in_words(full, units)}"
     *names, last = smallest.names
     listed = f"{', '.join(names)} and {last}" if names else last
     less = f"the smallest model within {within:.3g} is without {listed}"
-    return f"{less}: {model_in_words(smallest.model)}; {_changes(smallest)}"
+    return f"{less}: {model_in_words(smallest.model, units)}; {_changes(smallest, units)}"
 
 
-def _changes(each: Without) -> str:
+def _changes(each: Without, units: GivenUnits | None) -> str:
     """The change by its magnitude, and its error where that is not small beside it."""
-    mean, at = each.change.mean, f"at belt speed {each.change.belt_speed:.6g}"
+    speed = each.change.belt_speed
+    mean, at = (
+        each.change.mean,
+        f"at belt speed {speed:.6g}" if units is None else f"at belt speed {units.speed.text(speed)}",
+    )
     size = abs(mean.value)
     at_most = (
         f"at most {size + mean.error:.2g}" if size <= mean.error else with_error(size, mean.error, 3, " +- ")

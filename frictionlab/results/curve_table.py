@@ -17,6 +17,7 @@ from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import beside_in_si
 from frictionlab.results.loads_in_time import loads_of, varies
+from frictionlab.results.sentences_in_si import column_in_si_words
 from frictionlab.results.table import value_in
 from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
 from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, shakedown_of_slip
@@ -48,8 +49,11 @@ def curve_table(table: pd.DataFrame, laws: registry.Laws = registry.INSTALLED_LA
         _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws))
         for found, given in zip(places, inputs, strict=True)
     ]
-    own = _frame(read)
-    return pd.concat([heads, own, pd.DataFrame(beside_in_si(own, _speed_scales(table, places)))], axis=1)
+    own, scales = _frame(read), _speed_scales(table, places)
+    if scales:
+        told = column_in_si_words(own["reason"], scales)
+        own["reason"] = pd.Series(told, own.index, own["reason"].dtype)
+    return pd.concat([heads, own, pd.DataFrame(beside_in_si(own, scales))], axis=1)
 
 
 def _speed_scales(table: pd.DataFrame, places: Sequence[Floats]) -> dict[str, Floats]:

@@ -25,6 +25,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import beside_in_si, si_columns, si_scales
 from frictionlab.results.part import KeptRows, Part
+from frictionlab.results.sentences_in_si import column_in_si_words
 from frictionlab.scene.units import scaled_parameters
 from frictionlab.study import StudyCurve
 
@@ -184,6 +185,11 @@ class Results:
         in_si = si_columns(self._numbers, given.scales) if given.scales is not None and names is None else {}
         columns = given.columns | found | in_si
         shown = {name: column[rows] for name, column in columns.items() if column is not None}
+        if given.scales is not None:
+            scales = {name: values[rows] for name, values in given.scales.items()}
+            for name in ("reason", "model") if names is None else ():
+                if name in shown:
+                    shown[name] = np.array(column_in_si_words(shown[name], scales), dtype=object)
         frame = pd.DataFrame(shown, copy=False)
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
             if name in given.columns and frame[name].isna().all():

@@ -14,6 +14,7 @@ from frictionlab.columns import OF_MULTIPLIERS, OF_REST, ONSETS
 from frictionlab.methods.base import Answers
 from frictionlab.results.curve_table import curve_inputs
 from frictionlab.results.derived import beside_in_si
+from frictionlab.results.sentences_in_si import column_in_si_words
 from frictionlab.results.table import slice_of
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import answer
@@ -51,7 +52,7 @@ def onset_table(study: Study, table: pd.DataFrame) -> pd.DataFrame:
         scales += [_speed_scale(each)] * len(own)
     onsets = _frame(found, heads, keys, table)
     units = {} if curves[0].scenes.scene.dimensional is None else {"velocity": np.array(scales)}
-    return onsets.assign(**beside_in_si(onsets, units))
+    return onsets.assign(how=column_in_si_words(onsets["how"], units), **beside_in_si(onsets, units))
 
 
 def _speed_scale(curve: StudyCurve) -> float:

@@ -11,6 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.derived import si_columns, si_scales
 from frictionlab.results.part import Part
+from frictionlab.results.sentences_in_si import in_si_words
 from frictionlab.results.state import OrbitOf, SteadyState
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.chunks import Chunk, Task
@@ -42,7 +43,8 @@ def steady_state(
     (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
     (part,) = within(inf, parts, chunk, [piece])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
-    words = {name: column[0] for name, column in part.text.items()}
+    scales = {} if scene.dimensional is None else si_scales(scene)
+    words = {name: in_si_words(column[0], scales) for name, column in part.text.items()}
     motion = OrbitOf(piece.answers.orbit, scene, chunk.law)
     return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 
 import frictionlab as fl
 from frictionlab.columns import ALSO_IN_SI, ATTRACTORS, CURVES, HARMONICS, ONSETS
+from frictionlab.results.sentences_in_si import TOLD, in_si_words
 
 STUDY = {
     "schema": 1,
@@ -57,3 +60,31 @@ def test_no_number_in_si_units_depends_on_the_length_scale() -> None:
         assert np.abs((table - other[name]).to_numpy(dtype=float)).max(axis=0) == pytest.approx(
             0.0, abs=1e-9 * max(sizes)
         )
+
+
+@pytest.mark.parametrize("words", TOLD)
+def test_a_sentence_with_a_number_in_the_scales_of_the_scene_is_said_somewhere(words: str) -> None:
+    """Where a sentence changes, its numbers would stay nondimensional."""
+    before = words.partition("(NUMBER)")[0].partition(" .* ")[0].rstrip()
+
+    assert any(f"{before} {{" in path.read_text() for path in Path(fl.__file__).parent.rglob("*.py"))
+
+
+def test_sentences_have_lengths_and_speeds_in_si_units_once() -> None:
+    scales = {"length": 5e-6, "velocity": 5e-4}
+    said = "tested: starts up to 240 apart; 5 points below the end of reversal, 7.53982; needs 8"
+    wanted = "tested: starts up to 1.2 mm apart; 5 points below the end of reversal, 3.76991 mm/s; needs 8"
+
+    assert in_si_words(said, scales) == wanted
+    assert in_si_words(wanted, scales) == wanted
+    assert in_si_words("no point between belt speeds 2 and 4e-3, more than 5%", scales) == (
+        "no point between belt speeds 1 mm/s and 2 µm/s, more than 5%"
+    )
+
+
+def test_what_a_curve_needs_is_told_in_the_units_of_its_scene() -> None:
+    body = STUDY["scene"]["dimensional"] | {"belt_speed": "2 mm/s"}  # type: ignore[index]
+    found = fl.needs(fl.Scene(dimensional=fl.Dimensional(**body)), fl.Dahl(mu=0.3, presliding_length="1 um"))
+
+    assert "at belt speed 2 mm/s" in found.sentences[0]
+    assert "presliding_length 1 µm" in repr(found) or "Coulomb" in repr(found)

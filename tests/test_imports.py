@@ -111,6 +111,7 @@ OUTSIDE = {
         "pandas": "results runner charts report notebook explore cli least_model sensitivity units",
         "xarray": "notebook",
         "pyarrow": "results runner",
+        "tqdm": "runner",  # inside a function: it is used by long runs in a notebook alone
         "matplotlib": "charts notebook.comparison bench.charts bench.pictures",  # of comparison the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",

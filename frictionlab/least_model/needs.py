@@ -19,6 +19,7 @@ from frictionlab.least_model.search import LeastSearch, each_reason_once
 from frictionlab.quantities import Written
 from frictionlab.results.words import in_words
 from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
+from frictionlab.runner.progress import ProgressAsked, progress_told
 from frictionlab.scene.as_written import without_unit
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
@@ -45,13 +46,19 @@ class _Asked:
 
 
 def needs(
-    scene: Scene, law: FrictionLaw, belt_speed: ArrayLike | None = None, within: float | None = None
+    scene: Scene,
+    law: FrictionLaw,
+    belt_speed: ArrayLike | None = None,
+    within: float | None = None,
+    progress: ProgressAsked = None,
 ) -> Needs:
     """What a scene needs: each of its parts is taken away, the smaller model solved, and the means compared.
 
     belt_speed [omega_1 L; m/s for a scene in SI units]: of the curve, that of the scene where left out.
     within [-]: the tolerance on the mean friction coefficient; 1 % of steady sliding friction at the quickest belt
     speed where left out.
+    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
+    shows it.
 
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
@@ -66,7 +73,9 @@ def needs(
     own = scene.belt_speed if si is None else si.belt_speed_m_per_s
     scenes = Scenes(scene, np.unique(given_speeds(own if belt_speed is None else belt_speed)))
     asked = _Asked(speed=units_written({"": own}).get(""))
-    return _of_curve(scenes, law, None if within is None else given_tolerance(within, "within"), asked)
+    tolerance = None if within is None else given_tolerance(within, "within")
+    with progress_told(progress, "taking parts away", ""):
+        return _of_curve(scenes, law, tolerance, asked)
 
 
 def needs_of_study(study: Study, within: float | None = None) -> Iterator[Needs]:

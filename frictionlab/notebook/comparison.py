@@ -24,6 +24,7 @@ from frictionlab.results.table import swept_inputs, whole
 from frictionlab.runner.api import run as run_study
 from frictionlab.runner.api import with_onsets
 from frictionlab.runner.arguments import given_scene, given_speeds
+from frictionlab.runner.progress import ProgressAsked
 from frictionlab.runner.save import save_run
 from frictionlab.runner.saved import saved_as
 from frictionlab.scene.scene import Scene
@@ -226,6 +227,7 @@ def compare(
     tolerance: float = 1e-8,
     columns: Sequence[str] | None = None,
     executor: Executor | None = None,
+    progress: ProgressAsked = None,
 ) -> Comparison:
     """Several laws, by one or several methods, along belt speeds of one scene.
 
@@ -233,6 +235,8 @@ def compare(
     belt_speed: a list, or a range as in a study, ``{"start": 1, "stop": 60, "num": 120}``, or with ``"within": 1e-3``
     in place of num, which chooses points where curves bend; that of the scene where it is left out.
     columns: result columns, all by default.
+    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
+    shows it.
 
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
@@ -246,7 +250,7 @@ def compare(
     ready = given_scene(scene)
     listed = belt_speed if belt_speed is None or isinstance(belt_speed, Mapping) else given_speeds(belt_speed)
     over = {} if listed is None else {BELT_SPEEDS[ready.dimensional is not None]: listed}
-    return sweep(scene, laws, over, methods, tolerance, columns, executor)
+    return sweep(scene, laws, over, methods, tolerance, columns, executor, progress)
 
 
 def sweep(
@@ -257,8 +261,12 @@ def sweep(
     tolerance: float = 1e-8,
     columns: Sequence[str] | None = None,
     executor: Executor | None = None,
+    progress: ProgressAsked = None,
 ) -> Comparison:
     """The full grid of a sweep: ``over`` has lists or ranges by ``scene.<path>`` or ``laws.<label>.<parameter>``.
+
+    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
+    shows it.
 
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
@@ -275,7 +283,7 @@ def sweep(
     }
     study = Study.of(scene, laws, methods, over, **told)
     start = time.perf_counter()
-    done = run_study(study, executor=executor)
+    done = run_study(study, executor=executor, progress=progress)
     return Comparison(done, time.perf_counter() - start)
 
 

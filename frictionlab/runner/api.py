@@ -40,7 +40,7 @@ from frictionlab.runner.folder import ASKED, SOLVER, Identity, RunFolder
 from frictionlab.runner.gathering import whole_table
 from frictionlab.runner.in_use import alone_in
 from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, kept_beside
-from frictionlab.runner.progress import Progress, silent
+from frictionlab.runner.progress import ProgressAsked, progress_told, silent
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.study_run import Interrupted, RunWays, StudyRun, UnsavedError
 from frictionlab.runner.workforce import Workforce, workforce
@@ -67,7 +67,7 @@ def run(
     overrides: Sequence[str] = (),
     existing: Existing = "reuse",
     executor: Executor | Workforce | None = None,
-    progress: Progress = silent,
+    progress: ProgressAsked = None,
     columns: Sequence[str] | str | None = None,
     cache: str | PathLike[str] | None = None,
     cache_gigabytes: float = USUAL_GIGABYTES,
@@ -78,6 +78,8 @@ def run(
     overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
     existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
     executor: any; threads of this process by default.
+    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
+    shows it.
     cache: the folder that keeps solved chunks for this and other studies, ``.cache`` beside ``out`` by default; above
     so many gigabytes those used longest ago are removed. Without ``out`` and ``cache`` nothing is written.
     as_csv: write a table of more than 1e5 rows as text, too; it is read from its file where ``.table`` is asked for.
@@ -97,13 +99,14 @@ def run(
     check_ways(existing, executor)
     ready = given_study(study, overrides, columns)
     kept = kept_beside(out, cache, cache_gigabytes)
-    ways = RunWays(overrides, existing, executor, progress, as_csv)
-    if out is None:
-        return StudyRun(ready, None, kept, ways).run()
-    folder = run_folder(ready, Path(out))
-    with alone_in(folder.path):
-        folder.check(existing)
-        return StudyRun(ready, folder, kept, ways).run()
+    with progress_told(progress) as tell:
+        ways = RunWays(overrides, existing, executor, tell, as_csv)
+        if out is None:
+            return StudyRun(ready, None, kept, ways).run()
+        folder = run_folder(ready, Path(out))
+        with alone_in(folder.path):
+            folder.check(existing)
+            return StudyRun(ready, folder, kept, ways).run()
 
 
 def run_folder(study: Study, out: Path) -> RunFolder:
@@ -139,6 +142,7 @@ def curve(
     tolerance: float = 1e-8,
     columns: Sequence[str] | str | None = None,
     executor: Executor | None = None,
+    progress: ProgressAsked = None,
 ) -> pd.DataFrame:
     """The result table of one law over belt speeds: a row each, in the order given.
 
@@ -146,6 +150,8 @@ def curve(
     method: a name, or a method such as ``fl.March(steps=1000)``. tolerance [-]: absolute, on mean_friction.
     columns: result columns and groups of them, as for ``run``.
     executor: any; threads of this process by default.
+    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
+    shows it.
 
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
@@ -162,15 +168,20 @@ def curve(
     # a method is never given a belt speed twice
     different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
     whole = _one_curve(kind, law, ready, Scenes(scene, different))
-    table = table_of([whole], task, executor).iloc[places].reset_index(drop=True)
+    table = table_of([whole], task, executor, progress).iloc[places].reset_index(drop=True)
     return without_empty(table) if columns is None else table
 
 
-def table_of(curves: Sequence[StudyCurve], task: Task, executor: Executor | None = None) -> pd.DataFrame:
+def table_of(
+    curves: Sequence[StudyCurve],
+    task: Task,
+    executor: Executor | None = None,
+    progress: ProgressAsked = silent,
+) -> pd.DataFrame:
     """The result table of curves whose rows follow one another; nothing is kept. Raises BrokenPlugin."""
     solving = Solving(curves, task)
-    with workforce(executor) as force:
-        solving.solve(force)
+    with workforce(executor) as force, progress_told(progress) as tell:
+        solving.solve(force, tell)
     return whole_table(solving)
 
 
@@ -181,12 +192,15 @@ def attractors(
     starts: int = 8,
     method: str | Method = "auto",
     tolerance: float = 1e-8,
+    progress: ProgressAsked = None,
 ) -> pd.DataFrame:
     """Every state that motions of a driven scene end in, of whatever period: a row per Poincare point.
 
     So many starts are followed at each belt speed [scene velocity], as shooting does, and every state found is
     carried on to the next belt speed from both sides. Rows rise in belt speed; columns as in ``attractors.csv`` of a
     study: period in those of the drive, mean_friction [-], position x [L] and velocity [omega_1 L] of the point.
+    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
+    shows it.
 
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
@@ -200,7 +214,8 @@ def attractors(
     starts = at_least_one("starts", starts)
     different = np.unique(given_speeds(belt_speed))
     whole = _one_curve(kind_of(law), law, ready, Scenes(scene, different))
-    return attractor_table([whole], given_tolerance(tolerance), starts)
+    with progress_told(progress, "following starts", ""):
+        return attractor_table([whole], given_tolerance(tolerance), starts)
 
 
 def _one_curve(kind: str, law: FrictionLaw, method: Method, scenes: Scenes) -> StudyCurve:

@@ -21,6 +21,8 @@ FEWEST, USUAL, MOST = 0.3, 2.5, 12.0
 """Seconds spent on points: in any case, if the price is then still ``UNSURE``, and if it is large beside them."""
 SHARE, UNSURE = 0.1, 0.25
 """Of the price: what is spent to know it, and its standard error where it is known well enough."""
+FEWEST_POINTS = 3
+"""Of all kinds together, unless they take too long."""
 SINGLE, QUICK, GROWTH = 4, 0.01, 4
 """Points solved one by one; the time [s] of quick ones, after which neighbours are solved together, more and more."""
 COMPILING, TIMES_QUICKER = 15.0, 100.0
@@ -73,8 +75,9 @@ def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) ->
     while True:
         spent, known = sum(each.spent for each in samples), sum(each.seconds for each in samples)
         best, error = max(samples, key=_unsure), math.hypot(*map(_unsure, samples))
-        enough = FEWEST if error < UNSURE * known else max(USUAL, SHARE * known)
-        if best.unsure == 0.0 or spent > (min(enough, MOST) if error < math.inf else MOST):
+        enough = FEWEST if error < UNSURE * known else min(max(USUAL, SHARE * known), MOST)
+        few = error == math.inf or sum(each.measured for each in samples) < FEWEST_POINTS
+        if best.unsure == 0.0 or spent > (MOST if few else enough):
             break
         best.solve_more(MOST)
         tell(sum(each.measured for each in samples), points, math.nan)

@@ -1,4 +1,4 @@
-"""Progress of long runs: one updating line on a terminal, separate lines elsewhere."""
+"""Progress of long runs: one updating line on a terminal, a bar in a notebook, separate lines elsewhere."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import math
 import os
 import sys
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from threading import Event, Lock, Thread
 from types import TracebackType
-from typing import Self, TextIO
+from typing import Any, Self, TextIO
 
 from frictionlab.compile.notice import kernel_at_work
 
@@ -129,6 +129,53 @@ class Meter:
     ) -> None:
         self.close()
         self._thread.join()
+
+
+class NotebookMeter(Meter):
+    """The same as a bar, as notebooks draw it."""
+
+    def __init__(self, stream: TextIO) -> None:
+        super().__init__(stream)
+        self._updating = True
+        self._bar: Any = None
+
+    def _write(self, line: str) -> None:
+        if self._bar is None:
+            from tqdm.auto import tqdm  # takes a moment, of long runs alone
+
+            self._bar = tqdm(total=self._total, bar_format="{desc}{bar}", leave=False)
+        if self._bar.total != self._total:
+            self._bar.reset(self._total)
+        self._bar.n = self._done
+        self._bar.set_description_str(line)
+
+    def clear(self) -> None:
+        """Take the bar away."""
+        with self._one_at_a_time:
+            if self._bar is not None:
+                self._bar.close()
+            self._bar = None
+
+
+ProgressAsked = Progress | bool | None
+"""What a function takes: whether to tell progress on stderr; None where somebody sees it."""
+
+
+@contextmanager
+def progress_told(
+    progress: ProgressAsked, doing: str = "solving", things: str = "points"
+) -> Iterator[Progress]:
+    """What tells progress, within; nobody is told where neither a terminal nor a notebook shows stderr."""
+    in_notebook, stream = "ipykernel" in sys.modules, sys.stderr
+    watched = stream is not None and (in_notebook or stream.isatty())
+    if callable(progress):
+        yield progress
+    elif stream is None or not (watched if progress is None else progress):
+        yield silent
+    else:
+        with (NotebookMeter if in_notebook else Meter)(stream) as meter:
+            meter.begins(doing, things)
+            yield meter
 
 
 def spoken(seconds: float) -> str:

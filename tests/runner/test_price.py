@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
+import numpy as np
 import pytest
 from fake_methods import Another, Fake, register
 
 import frictionlab as fl
 from frictionlab.compile.call import KernelCall, NotKept
 from frictionlab.methods.base import Answers
-from frictionlab.methods.under_way import each_told
+from frictionlab.methods.under_way import UnderWay, each_told
 from frictionlab.runner.chunks import task_of
+from frictionlab.runner.forecast import Forecast
 from frictionlab.runner.price import Price, prices, solving_seconds
 from frictionlab.study import parse_study
 
@@ -60,15 +63,13 @@ def priced(**changes: Any) -> list[Price]:
 
 
 def test_a_few_points_of_every_kind_tell_what_all_will_take() -> None:
-    priced()  # imports are paid for once
     quick, slow = priced()
-    start = time.perf_counter()
-    fl.run(STUDY)
-    took = time.perf_counter() - start
+    paused = sum(Slow.pauses[bool(speed > 4.0)] for speed in np.linspace(1.0, 10.0, 30))
 
     assert 2 < slow.measured < 30
-    assert quick.seconds < 0.1 * slow.seconds
-    assert took / 2.0 < solving_seconds([quick, slow]) < 2.0 * took
+    assert quick.seconds < 0.2 * slow.seconds
+    assert paused / 2.0 < slow.seconds == slow.longest < 2.0 * paused
+    assert solving_seconds([quick, slow]) >= quick.start + slow.longest
 
 
 def test_what_would_have_to_be_compiled_is_told_and_not_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -85,14 +86,38 @@ def test_what_would_have_to_be_compiled_is_told_and_not_compiled(monkeypatch: py
     assert (price.measured, price.to_compile) == (0, {"frictionlab_anything_12ab"})
 
 
-def test_the_time_left_is_within_a_factor_of_three_from_a_tenth_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("frictionlab.runner.forecast.LEARNS_AFTER", 0.0)
-    told: list[tuple[float, float]] = []
-    study = STUDY | {"laws": [{"kind": "coulomb", "mu": mu, "label": str(mu)} for mu in (0.2, 0.3, 0.4)]}
-    start = time.perf_counter()
-    fl.run(study, progress=lambda _done, _of, left: told.append((time.perf_counter() - start, left)))
-    took = told[-1][0]
+@pytest.mark.parametrize("slow_first", [True, False])
+def test_the_time_left_is_within_a_factor_of_three_from_a_tenth_on(
+    slow_first: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of two workers with chunks of two kinds, each slowest at first, of which a few points are sampled."""
+    now, running = [0.0], dict[int, UnderWay]()
+    for clock in ("monotonic", "perf_counter"):
+        monkeypatch.setattr(f"frictionlab.runner.forecast.time.{clock}", lambda: now[0])
+    monkeypatch.setattr("frictionlab.runner.forecast.under_way", running)
+    seconds = {("quick", ""): [0.2] * 5 + [0.05] * 20, ("slow", ""): [3.0] * 5 + [0.5] * 20}
+    kinds = [kind for kind in seconds for _ in range(3)][:: -1 if slow_first else 1]
+    forecast = Forecast([(kind, 25) for kind in kinds])
+    for kind, each in seconds.items():
+        forecast.learn(kind, 3, sum(each[2::9]))
+    waiting: list[Any] = [SimpleNamespace(chunk=object(), kind=kind, left=range(25)) for kind in kinds]
+    busy, told = list[Any](), list[tuple[float, float]]()
+    while waiting or busy:
+        while waiting and len(busy) < 2:
+            busy.append(waiting.pop(0))
+            forecast.sent(busy[-1])
+            running[id(busy[-1].chunk)] = UnderWay(now[0])
+        now[0] += 0.1
+        for work in list(busy):
+            one, ends = running[id(work.chunk)], np.cumsum(seconds[work.kind])
+            one.points = int((ends <= now[0] - one.begun).sum())
+            one.seconds = float(ends[one.points - 1]) if one.points else 0.0
+            if one.points == 25:
+                busy.remove(work)
+                del running[id(work.chunk)]
+                forecast.came_back(work, one.seconds)
+        told.append((now[0], forecast.seconds_left()))
 
     for since, left in told:
-        if 0.1 * took < since < 0.8 * took:
-            assert (took - since) / 3.0 < left < 3.0 * (took - since), (since, took)
+        if 0.1 * now[0] < since < 0.9 * now[0]:
+            assert (now[0] - since) / 3.0 < left < 3.0 * (now[0] - since), (since, now[0])

@@ -5,17 +5,20 @@ from __future__ import annotations
 import io
 import os
 import struct
+import sys
 import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from types import ModuleType, SimpleNamespace
 from typing import Any, TextIO
 
 import pytest
 
+import frictionlab as fl
 from frictionlab.compile.notice import mark_cache_miss, named_while_it_compiles
-from frictionlab.runner.progress import Meter, spoken
+from frictionlab.runner.progress import Meter, progress_told, silent, spoken
 
 fcntl, termios = pytest.importorskip("fcntl"), pytest.importorskip("termios")
 
@@ -133,6 +136,43 @@ def test_the_line_goes_on_by_itself_never_wraps_and_is_gone_at_the_end(
     assert max(map(len, states)) < columns
     assert any(state.startswith("study 2 of 15: find") for state in states)
     assert states[-2:] == [" " * len(states[-2]), ""]
+
+
+def test_python_calls_tell_progress_where_it_is_seen_or_asked_for(capsys: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("frictionlab.runner.progress.QUIET", 0.0)
+    with progress_told(None) as nobody:
+        assert nobody is silent  # a test has neither terminal nor notebook
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    for progress, lines in ((None, 0), (False, 0), (True, 1)):
+        fl.curve(scene, fl.Coulomb(mu=0.4), [5, 25], progress=progress)
+        assert capsys.readouterr().err.startswith("solving: ") == lines
+
+
+def test_a_notebook_draws_a_bar(monkeypatch: Any) -> None:
+    bars: list[Any] = []
+
+    class Bar:
+        def __init__(self, total: int, **_: Any) -> None:
+            self.total, self.n, self.said, self.closed = total, 0, "", False
+            bars.append(self)
+
+        def set_description_str(self, said: str) -> None:
+            self.said = said
+
+        def close(self) -> None:
+            self.closed = True
+
+    monkeypatch.setattr("frictionlab.runner.progress.QUIET", 0.0)
+    monkeypatch.setitem(sys.modules, "ipykernel", ModuleType("ipykernel"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", SimpleNamespace(tqdm=Bar))
+    with progress_told(None) as tell:
+        tell(7, 40, 12.0)
+
+    (bar,) = bars
+    assert (bar.total, bar.n, bar.closed) == (40, 7, True)
+    assert bar.said.startswith("solving: 7 of 40 points, about 12 s left")
 
 
 @pytest.mark.parametrize(

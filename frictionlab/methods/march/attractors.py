@@ -120,10 +120,14 @@ def unrepeated_arrival(march: MarchRun, run: MarchResult) -> Arrival:
     return Arrival(0, found.mean, float(laps.min()), float(laps.max()), len(laps), found)
 
 
-def mean_of_unrepeated(march: MarchRun, runs: Sequence[MarchResult], own: LongMean) -> LongMean:
-    """The long mean of a motion that never repeats; its error by steps, too: what those of other runs make of it."""
-    others = [long_mean([march.means_of_laps(run, LAPS_AVERAGED)]) for run in runs]
-    return own._replace(error=own.error + max(abs(each.mean - own.mean) for each in others))
+def mean_of_unrepeated(
+    march: MarchRun, run: MarchResult, others: Sequence[MarchResult], own: LongMean
+) -> LongMean:
+    """The long mean of a motion that never repeats; its error by steps, too: what those of other runs make of it, and
+    what slip that begins or ends inside a step may cost."""
+    means = [long_mean([march.means_of_laps(other, LAPS_AVERAGED)]).mean for other in others]
+    by_steps = max(abs(mean - own.mean) for mean in means) + crossing(march, run)
+    return own._replace(error=own.error + by_steps)
 
 
 def first_arrival(march: MarchRun, mean: MarchMean) -> Arrival:

@@ -212,7 +212,7 @@ class MarchedPoint:
     def _accept_long_mean(self, runs: Sequence[MarchResult], readable: MarchResult, long: LongMean) -> None:
         """Answer by the long mean of a motion that never repeats."""
         others = [run for run in (runs if self.plan.steps else runs[-2:]) if run is not readable]
-        found = mean_of_unrepeated(self.march, others, long)
+        found = mean_of_unrepeated(self.march, readable, others, long)
         self.status, self.error_kind = "ok", STATISTICAL
         self.orbit = partial(self._orbit, readable, 1)
         window = LAPS_AVERAGED * self.march.periods

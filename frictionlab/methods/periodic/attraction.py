@@ -219,6 +219,7 @@ def iterate_until_periodic(
     before, after, predicted = np.empty(residual.size), np.empty(residual.size), np.empty(residual.size)
     subtract(states[0], orbit.state, before)
     near, obeyed, far = VERY_NEAR * norm(orbit.state), 0, 0.0
+    passed = np.zeros(means.size + 1)  # periods until each state
     for n in range(means.size):
         image = period_map(setting, states[n], residual, how.accuracy)
         means[n] = mean_friction(image.friction_impulse.real, scales.period)
@@ -226,6 +227,7 @@ def iterate_until_periodic(
         many = 1.0 if how.whole else _periods_alike(setting, states[n], image)
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + many * residual[row]
+        passed[n + 1] = passed[n] + many
         if slides_on and ends_in_sliding(setting, states[n + 1]):
             return 1, n + 1
         subtract(states[n + 1], orbit.state, after)
@@ -240,7 +242,7 @@ def iterate_until_periodic(
             repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < alike
             # A spiral into an orbit of fewer periods looks like a longer one while it is still far out.
             if repeats and nearest > 1e-4:
-                return k, n + 1
+                return int(passed[n + 1] - passed[n + 1 - k]), n + 1
             nearest = min(nearest, _apart(states, n + 1, n + 1 - k))
         if image.steps < 0 or steps > MUCH_WORK:
             return 0, n + 1

@@ -242,7 +242,8 @@ class PeriodicProblem:
 
         known: an orbit that attracts; a motion that is sure to end there is followed no farther.
         """
-        return self._iterate(belt_speed, state, most, MAP_KINDS[self.kind].rough, known)
+        how = Follow(MAP_KINDS[self.kind].rough * self.mass.normal_load, self.goal.constant)
+        return self._follow(belt_speed, state, most, how, known or unknown_orbit(self.size))
 
     def positions(self, states: Floats) -> tuple[Floats, Floats]:
         """Position and velocity along x1 of states at the start of a period."""
@@ -261,7 +262,7 @@ class PeriodicProblem:
 
     def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:
         """An orbit of so many periods, from its state."""
-        return self._iterate(belt_speed, state, periods, 1e-9)
+        return self.followed_on(belt_speed, state, periods, 1e-9)
 
     def followed_on(self, belt_speed: float, state: Floats, periods: int, accuracy: float) -> Transient:
         """The motion from a state for so many periods, each by itself; fewer where they take too many steps.
@@ -291,17 +292,6 @@ class PeriodicProblem:
                 lengths = orbit.tau[:, -1] - orbit.tau[:, 0]
                 means[i] = -0.5 * (lengths * (orbit.friction.real @ WEIGHTS)).sum() / lengths.sum()
         return ends, means
-
-    def _iterate(
-        self,
-        belt_speed: float,
-        state: Floats,
-        most: int,
-        relative: float,
-        known: KnownOrbit | None = None,
-    ) -> Transient:
-        how = Follow(relative * self.mass.normal_load, self.goal.constant)
-        return self._follow(belt_speed, state, most, how, known or unknown_orbit(self.size))
 
     def _follow(
         self, belt_speed: float, state: Floats, most: int, how: Follow, known: KnownOrbit

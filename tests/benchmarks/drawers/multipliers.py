@@ -45,7 +45,7 @@ def by_differences(scene: fl.Scene, law: Any) -> Reference | None:
     way = abs(scene.belt_speed) * 2.0 * np.pi / scene.frequency
 
     def image(start: Any) -> Any:
-        return problem._iterate(scene.belt_speed, start.copy(), 1, 1e-13).state
+        return problem.followed_on(scene.belt_speed, start.copy(), 1, 1e-13).state
 
     middle, found, kinks = image(state), [], []
     for relative in SHIFTS:

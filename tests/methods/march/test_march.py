@@ -334,7 +334,7 @@ def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     answers, of_14_periods = solve(one, law, 1e-3), 0.24989114957
     assert (answers.status, answers.error_kind) == (["ok"], ["statistical"])
     assert "does not repeat (quasi-periodic)" in answers.reason[0]
-    assert answers.columns["error"][0] < 1e-5
+    assert answers.columns["error"][0] < 2e-3
     assert answers.columns["window"][0] == 512.0
     assert np.isnan(answers.columns["period"][0])
     assert np.isnan(answers.columns["mean_low"][0])

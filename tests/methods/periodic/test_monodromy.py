@@ -25,7 +25,8 @@ def by_quotients(problem: PeriodicProblem, belt_speed: float, state: Any) -> Any
     shift, columns = 1e-4, []
     for unit in np.eye(state.size):
         ends = [
-            problem._iterate(belt_speed, state + side * shift * unit, 1, 1e-12).state for side in (1.0, -1.0)
+            problem.followed_on(belt_speed, state + side * shift * unit, 1, 1e-12).state
+            for side in (1.0, -1.0)
         ]
         columns.append((ends[0] - ends[1]) / (2.0 * shift))
     return np.array(columns).T

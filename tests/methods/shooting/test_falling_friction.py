@@ -14,6 +14,7 @@ from strategies import sizes
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse
 from frictionlab.theory.uniqueness import is_convergent
@@ -193,6 +194,27 @@ def test_an_orbit_of_several_periods_that_every_start_reaches_has_its_mean_over_
     assert orbit.tau[-1, -1] - orbit.tau[0, 0] == pytest.approx(4.0 * 2.0 * math.pi / 1.3)
     work = row["energy_input"], row["energy_viscous"] + row["energy_friction"]
     assert work[0] == pytest.approx(work[1], abs=1e-7)
+
+
+def test_the_period_counts_those_in_which_the_belt_carries_the_mass_at_rest():
+    """It rests for 17 of 21 periods; the orbit is followed period by period to see it repeat."""
+    one = Scene(
+        damping_ratio=0.03246871179596226,
+        normal_load=16.02828375133281,
+        belt_speed=0.13916477363586577,
+        drive=Drive(amplitude=2.5752477359921406, phase=268.96702352659554, frequency=2.3134657220457453),
+    )
+    law = Coulomb(mu=0.6898387369384938, mu_static=1.1072202755450422)
+    answers = solve(one, law, 1e-6)
+    problem = PeriodicProblem(one, law, 1e-6)
+    start = problem.state_at(one.belt_speed, None)
+    motion = problem.followed_on(one.belt_speed, start, 600, 1e-9)
+    last = motion.states[-64:]
+    lags = [lag for lag in range(1, 32) if np.abs(last[lag:] - last[:-lag]).max() < 1e-6]
+    assert lags == [21]
+    assert (answers.status, answers.columns["period"][0]) == (["ok"], 21.0)
+    apart = abs(answers.columns["mean_friction"][0] - motion.means[-21:].mean())
+    assert apart <= answers.columns["error"][0] + 1e-8
 
 
 def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():

@@ -10,9 +10,14 @@ from profiles import DEEP
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
+from frictionlab.runner.plan import plan
 from frictionlab.study import load_study
 
-STUDIES = sorted((Path(__file__).parent.parent / "studies").glob("*.yaml"))
+PROJECT = Path(__file__).parent.parent
+SI = sorted((PROJECT / "studies" / "si").glob("*.yaml"))
+"""Written in units, as from the table of a paper."""
+STUDIES = sorted((PROJECT / "studies").glob("*.yaml")) + SI
+PAGE = PROJECT / "docs" / "applications.md"
 
 
 SLOW = (
@@ -27,7 +32,7 @@ SLOW = (
 
 def is_for_the_deep_profile(study: Path) -> bool:
     """Whether a study puts a free body on bristles, or a slip across the belt: such kernels take long to compile."""
-    if study.stem in SLOW:
+    if study.stem in SLOW or study in SI:
         return True
     plan = load_study(study)
     long = any(
@@ -46,6 +51,15 @@ def test_a_study_has_a_short_name_its_claim_in_the_title_its_source_and_why_it_e
         assert " " in plan.title
         assert plan.source, study
         assert all(expectation.because for expectation in plan.expect), study
+
+
+def test_every_study_in_units_is_planned_with_a_method_and_is_on_its_page() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    for study in SI:
+        read = load_study(study)
+        assert not any(planned.refused for planned in plan(read))
+        assert f"[{study.stem}](../studies/si/{study.name}) | {read.title} |" in text
+    assert text.count("](../studies/si/") == len(SI)
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)

@@ -150,7 +150,7 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
     """
     given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
     belt, periods = scene.belt_speed, carried_for(scene, limit)
-    side, way = math.copysign(1.0, belt), limit * (FEWEST / periods if MOST < periods < math.inf else 1.0)
+    side, way = math.copysign(1.0, belt), limit * (FEWEST / periods if periods > MOST else 1.0)
     last = side * (limit - way)
     shaken = None if way == limit else Initial(x=side * limit)
     flung = Initial(x=last - side * 2.0 * way, velocity=-side * (abs(belt) + way))
@@ -161,11 +161,11 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
 def carried_for(scene: Scene, limit: float) -> float:
     """Periods in which the belt carries a mass, held by this force, over both its spring's deflections under it.
 
-    Infinite on a belt at rest.
+    0 on a belt at rest.
     """
     mass = scene.mass()
     way = abs(scene.belt_speed) * 2.0 * math.pi / mass.frequency * scene.periods
-    return CLIMBS * limit / mass.stiffness / way if way > 0.0 else math.inf
+    return CLIMBS * limit / mass.stiffness / way if way > 0.0 else 0.0
 
 
 def resting_starts(scene: Scene, limit: float, count: int = PLACES_ON_THE_BELT) -> list[Initial]:
@@ -321,8 +321,7 @@ def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> in
     period = 2.0 * math.pi / mass.frequency
     weakest = mass.damping if scene.load_along_belt_only else min(mass.damping, mass.transverse_damping)
     own = 2.0 * DECAYS / (weakest * period) if weakest > 0.0 else MOST
-    carried = carried_for(scene, mass.normal_load * friction_at_rest(law))
-    own = max(own, carried if carried < math.inf else 0.0)
+    own = max(own, carried_for(scene, mass.normal_load * friction_at_rest(law)))
     if candidate is None or candidate.curve is None:
         return int(min(max(5 * FEWEST, own), MOST))
     rate = max(-math.log(max(multiplier(candidate.curve), 1e-3)), 1e-9)

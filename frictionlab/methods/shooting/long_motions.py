@@ -7,10 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
-from frictionlab.methods.shooting.attractors import POINTS_KEPT, Attractor, FollowedStarts, orbit_at_the_end
+from frictionlab.methods.shooting.attractors import (
+    MOST,
+    POINTS_KEPT,
+    Attractor,
+    FollowedStarts,
+    carried_for,
+    orbit_at_the_end,
+)
 from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import friction_at_rest
 
 LENGTHS = 512, 1024, 2048
 """Periods after which motions are averaged: the next length where the error is not small enough yet."""
@@ -98,7 +106,8 @@ def drifts(sizes: Floats) -> bool:
 
 def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: FollowedStarts) -> None:
     """Say of every start whose motion did not repeat where it leads over a long time."""
-    if not any(one.curve is None and one.average is None for one in followed.reached):
+    on_the_way = carried_for(scene, problem.mass.normal_load * friction_at_rest(problem.law)) > MOST
+    if on_the_way or not any(one.curve is None and one.average is None for one in followed.reached):
         return
     places = [place for place, one in enumerate(followed.reached) if one.curve is None and not one.neutral]
     motions = {place: LongMotion(problem, scene, followed.reached[place]) for place in places}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,6 +32,7 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
     """
     from frictionlab import bench
     from frictionlab.bench.page import check_folder, save
+    from frictionlab.runner.progress import spoken
 
     try:
         asked = bench.load_bench(bench_list).only(only)
@@ -39,10 +41,18 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
     folder = out or Path("runs") / f"bench-{asked.name}"
     check_folder(folder)
     done: list[SectionResult] = []
+    start = last = time.monotonic()
+
+    def tell(what: str) -> None:
+        """What is measured now, and the time left if parts take as long as those before."""
+        left = (last - start) * len(asked.names) / len(done) - (time.monotonic() - start) if done else 0.0
+        print_message(f"{what}, about {spoken(left)} left" if left > 0.5 else what)
+
     try:
-        for finished in bench.measure(asked, print_message, first_runs):
+        for finished in bench.measure(asked, tell, first_runs):
             page = save(finished, folder)
             done.append(finished)
+            last = time.monotonic()
     except KeyboardInterrupt:
         raise CommandError(
             INTERRUPTED, f"interrupted: {len(done)} of {len(asked.names)} {asked.parts} done"

@@ -16,12 +16,13 @@ Each = TypeVar("Each")
 
 @dataclass(eq=False)
 class UnderWay:
-    """Points answered since it was begun, and the seconds until the last of them, compiling left out.
+    """Points answered since it was begun, the seconds they took, compiling left out, and when the last one was told.
 
     Of a method that answers all points together there are none.
     """
 
     begun: float
+    told_at: float
     points: int = 0
     seconds: float = 0.0
 
@@ -46,4 +47,5 @@ def each_told(points: Iterable[Each]) -> Iterator[Each]:
         yield each
         if now is not None:
             now.points += 1
-            now.seconds = time.perf_counter() - seconds_compiling() - now.begun
+            now.told_at = time.perf_counter()
+            now.seconds = now.told_at - seconds_compiling() - now.begun

@@ -6,21 +6,25 @@ import math
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from threading import Thread
 
+from frictionlab.faults import BrokenPlugin
 from frictionlab.runner.chunks import Task
 from frictionlab.runner.limit import under_way
 from frictionlab.runner.open_chunks import OpenChunk
 from frictionlab.study import StudyCurve
 
-LEARNS_AFTER = 2.0
-"""Seconds after which points are solved to learn what they take, where a kind of them has not come back yet."""
+LEARNS_AFTER, MOST_LEARNING = 2.0, 4.0
+"""Seconds after which points are solved to learn what kinds take whose turn comes late, and how long for."""
+GOES_ON = 0.7
+"""What has not told of a point for long goes on for about so many times as long."""
 PointKind = tuple[str, str]
 """The labels of a law and of a method."""
 
 
 class Forecast:
-    """Points left of each kind, and what points of it took."""
+    """Points left of each kind, and what points of it took. is_over: whether nobody waits any longer."""
 
     def __init__(self, points: Iterable[tuple[PointKind, int]]) -> None:
         self._left, self._solved = Counter[PointKind](), Counter[PointKind]()
@@ -29,6 +33,7 @@ class Forecast:
             self._left[kind] += count
         self._sent: dict[int, OpenChunk] = {}
         self._begun, self._back, self._learns = time.monotonic(), 0.0, False
+        self.is_over = False
 
     def sent(self, work: OpenChunk) -> None:
         """A chunk is sent out."""
@@ -57,43 +62,44 @@ class Forecast:
 
     def seconds_left(self) -> float:
         """Until all points are solved; NaN as long as nothing is known."""
-        running = [
-            (self._sent[key], now.points, now.seconds, time.perf_counter() - now.begun)
-            for key, now in list(under_way.items())
-            if key in self._sent
-        ]
-        left, solved, seconds = self._left.copy(), self._solved.copy(), self._seconds.copy()
-        for work, points, spent, _ in running:
-            left[work.kind] -= points
-            solved[work.kind] += points
-            seconds[work.kind] += spent
+        running = [(self._sent[key], now) for key, now in list(under_way.items()) if key in self._sent]
+        waiting, solved, seconds = self._left.copy(), self._solved.copy(), self._seconds.copy()
+        for work, now in running:
+            waiting[work.kind] -= len(work.left)
+            solved[work.kind] += now.points
+            seconds[work.kind] += now.seconds
         if not solved.total():
             return math.nan
         usual = sum(seconds.values()) / solved.total()
-        rate = {kind: seconds[kind] / solved[kind] if solved[kind] else usual for kind in left}
-        total = sum(count * rate[kind] for kind, count in left.items() if count > 0)
-        longest = 0.0
-        for work, points, spent, since in running:
-            own = (len(work.left) - points) * rate[work.kind]
-            # some of it is done, of a method that tells of no point all the time it has spent
-            done = min(since - spent, 0.9 * own)
-            total, longest = total - done, max(longest, own - done)
+        rate = {kind: seconds[kind] / solved[kind] if solved[kind] else usual for kind in waiting}
+        clock, rests = time.perf_counter(), [0.0]
+        for work, now in running:
+            silent_for = clock - now.told_at
+            known = (len(work.left) - now.points) * rate[work.kind] - silent_for
+            rests.append(max(known, GOES_ON * silent_for))
+        total = sum(rests) + sum(count * rate[kind] for kind, count in waiting.items() if count > 0)
         passed = time.monotonic() - self._begun
         at_once = len(running) or max(1.0, self._back / passed if passed > 0.0 else 1.0)
-        return max(total / at_once, longest)
+        return max(total / at_once, *rests)
 
     def learn_from_samples(self, curves: Sequence[StudyCurve], task: Task) -> None:
-        """Once it is time, solve points of every kind on a thread of its own: the turn of some comes late."""
+        """Once it is time, solve points of the kinds not begun yet, on a thread of its own."""
         if self._learns or time.monotonic() - self._begun < LEARNS_AFTER:
             return
         self._learns = True
-        if all(self._solved[kind] for kind, count in self._left.items() if count > 0):
-            return
-
-        def learn() -> None:
-            for kind, price in prices(curves, task).items():
-                self.learn(kind, price.measured, price.spent)
-
         from frictionlab.runner.price import prices  # with numba
 
-        Thread(target=learn, daemon=True).start()
+        def learn() -> None:
+            with suppress(BrokenPlugin):  # the run itself tells of it
+                while (unknown := self._not_begun()) and not self.is_over:
+                    chosen = [each for each in curves if (each.law_label, each.method.label) in unknown]
+                    for kind, price in prices(chosen, task, most=MOST_LEARNING).items():
+                        self.learn(kind, price.measured, price.spent)
+                    time.sleep(LEARNS_AFTER)  # kernels may have been compiled by then
+
+        if self._not_begun():
+            Thread(target=learn, daemon=True).start()
+
+    def _not_begun(self) -> set[PointKind]:
+        begun = {work.kind for key, work in list(self._sent.items()) if key in under_way}
+        return {kind for kind, count in self._left.items() if count > 0 and not self._solved[kind]} - begun

@@ -44,8 +44,9 @@ def solve_within(chunk: Chunk) -> Solved:
 
 def solve_timed(chunk: Chunk) -> Solved:
     """Answer every point of a chunk on this thread. Raises BrokenPlugin."""
-    start = time.perf_counter() - seconds_compiling()
-    now = under_way[id(chunk)] = UnderWay(start)
+    begun = time.perf_counter()
+    start = begun - seconds_compiling()
+    now = under_way[id(chunk)] = UnderWay(start, begun)
     try:
         with told_to(now):
             parts = solve(chunk)

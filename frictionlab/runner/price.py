@@ -61,8 +61,10 @@ def solving_seconds(prices: Sequence[Price]) -> float:
     return start + max(total / (os.cpu_count() or 1), *(each.longest for each in prices))
 
 
-def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) -> dict[tuple[str, str], Price]:
-    """By the labels of law and method, in the order of the curves; nothing is compiled.
+def prices(
+    curves: Sequence[StudyCurve], task: Task, tell: Progress = silent, most: float = MOST
+) -> dict[tuple[str, str], Price]:
+    """By the labels of law and method, in the order of the curves; nothing is compiled. most: seconds spent on it.
 
     The next points are solved where they tell most about the sum. Raises BrokenPlugin.
     """
@@ -75,11 +77,11 @@ def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) ->
     while True:
         spent, known = sum(each.spent for each in samples), sum(each.seconds for each in samples)
         best, error = max(samples, key=_unsure), math.hypot(*map(_unsure, samples))
-        enough = FEWEST if error < UNSURE * known else min(max(USUAL, SHARE * known), MOST)
+        enough = FEWEST if error < UNSURE * known else min(max(USUAL, SHARE * known), most)
         few = error == math.inf or sum(each.measured for each in samples) < FEWEST_POINTS
-        if best.unsure == 0.0 or spent > (MOST if few else enough):
+        if best.unsure == 0.0 or spent > (most if few else enough):
             break
-        best.solve_more(MOST)
+        best.solve_more(most)
         tell(sum(each.measured for each in samples), points, math.nan)
     solved = [each for each in samples if each.measured]
     usual = sum(each.seconds for each in solved) / max(1, sum(each.points for each in solved))

@@ -111,6 +111,7 @@ class Solving:
         try:
             force.solve(to_solve(), self._take, tick)
         finally:
+            forecast.is_over = True
             if self._keeping.kept is not None and not self._keeping.must_keep:
                 self._keeping.kept.trim()
 

@@ -106,12 +106,13 @@ def test_the_time_left_is_within_a_factor_of_three_from_a_tenth_on(
         while waiting and len(busy) < 2:
             busy.append(waiting.pop(0))
             forecast.sent(busy[-1])
-            running[id(busy[-1].chunk)] = UnderWay(now[0])
+            running[id(busy[-1].chunk)] = UnderWay(now[0], now[0])
         now[0] += 0.1
         for work in list(busy):
             one, ends = running[id(work.chunk)], np.cumsum(seconds[work.kind])
             one.points = int((ends <= now[0] - one.begun).sum())
             one.seconds = float(ends[one.points - 1]) if one.points else 0.0
+            one.told_at = one.begun + one.seconds
             if one.points == 25:
                 busy.remove(work)
                 del running[id(work.chunk)]

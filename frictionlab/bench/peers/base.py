@@ -61,8 +61,6 @@ class Peer(Record, ABC):
     name: ClassVar[str]
     package: ClassVar[str]
     remedy: ClassVar[str] = "pip install frictionlab[peers]"
-    seconds: ClassVar[float] = 0.05
-    """A guess of what a point costs; for planning only."""
     together: ClassVar[bool] = False
     """Whether it solves many scenes at once for less than one after another."""
 

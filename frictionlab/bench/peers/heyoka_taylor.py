@@ -30,7 +30,6 @@ class Heyoka(Peer):
 
     name: ClassVar[str] = "heyoka"
     package: ClassVar[str] = "heyoka"
-    seconds: ClassVar[float] = 5e-4
     together: ClassVar[bool] = True
 
     lanes: Annotated[int, Field(strict=True, ge=1)] | None = None

@@ -35,7 +35,6 @@ class Numbalsoda(Peer):
 
     name: ClassVar[str] = "numbalsoda"
     package: ClassVar[str] = "numbalsoda"
-    seconds: ClassVar[float] = 5e-3
     remedy: ClassVar[str] = "pip install numbalsoda, which needs a Fortran compiler"
 
     def other_law(self, law: FrictionLaw) -> str | None:

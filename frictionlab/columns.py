@@ -508,7 +508,12 @@ def unit_shown(name: str) -> str:
     shown = name.partition(SHOWN_IN)[2]
     if not shown:
         return next(iter(_entry(name)[2:]), "") or IN_SI_UNITS.get(name, "")
-    return re.sub(r"(?:\^|\*\*)(-?\d)", r"$^{\1}$", re.sub(r"\bu(?=[A-Za-z])", "µ", shown))
+    return typeset(shown)
+
+
+def typeset(unit: str) -> str:
+    """A unit as a person types it, in mathtext."""
+    return re.sub(r"(?:\^|\*\*)(-?\d)", r"$^{\1}$", re.sub(r"\bu(?=[A-Za-z])", "µ", unit))
 
 
 def quantity(name: str, longest: int = 80) -> str:

@@ -73,7 +73,7 @@ ARROWS = {
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
         "charts": "columns printable study units",
         "report": "charts columns printable quantities registry results runner scene study units",
-        "notebook": "charts columns report results runner scene study",
+        "notebook": "charts columns report results runner scene study units",
         "explore": "charts columns report results runner units",
         "scaffold": "registry runner",
         "bench": (

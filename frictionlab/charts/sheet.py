@@ -94,7 +94,7 @@ def write_heading(axes: Axes, words: str, width: float, pad: float | None = None
     lines, size = [""], float(axes.title.get_fontsize())
     for part in words.split(", "):
         longer = f"{lines[-1]}, {part}" if lines[-1] else part
-        fits = not lines[-1] or text_width(axes.figure, longer, size) <= width / PICTURE_SHARE
+        fits = not lines[-1] or text_width(axes.figure, longer, size) <= width
         lines = [*lines[:-1], longer] if fits else [*lines, part]
     axes.set_title(",\n".join(lines), loc="left", pad=pad)
 

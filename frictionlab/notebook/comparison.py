@@ -32,6 +32,7 @@ from frictionlab.study import Study
 from frictionlab.study.axes import FRICTION
 from frictionlab.study.figure_options import figure_options
 from frictionlab.study.objects import LawsGiven, MethodsGiven
+from frictionlab.units.shown import in_shown_units
 
 if TYPE_CHECKING:
     import xarray
@@ -216,7 +217,8 @@ class Comparison:
         return summary(self.run)
 
     def _repr_html_(self) -> str:
-        return preview_html(self.table, self.curves)
+        table, curves = (in_shown_units(each, self.study.units) for each in (self.table, self.curves))
+        return preview_html(table, curves)
 
 
 def compare(

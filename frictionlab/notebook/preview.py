@@ -7,10 +7,11 @@ from typing import Any
 
 import pandas as pd
 
-from frictionlab.columns import BELT_SPEEDS
+from frictionlab.columns import SHOWN_IN, belt_speed
 from frictionlab.results.summary import mean_span
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import in_words
+from frictionlab.scene.as_written import without_unit
 
 MOST_CURVES = 20
 WIDTH, HEIGHT = 120.0, 28.0
@@ -22,7 +23,7 @@ def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:
     keys = ["law", "method", *swept_inputs(table)]
     groups = list(table.groupby(keys, sort=False, dropna=False))
     heads = [
-        *(name.removeprefix("scene.") for name in keys),
+        *map(_head, keys),
         "mean friction",
         "least … greatest",
         "shape",
@@ -32,6 +33,12 @@ def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:
     more = f"<p>and {len(groups) - MOST_CURVES} more curves</p>" if len(groups) > MOST_CURVES else ""
     head = "".join(f"<th>{escape(each)}</th>" for each in heads)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>{more}"
+
+
+def _head(name: str) -> str:
+    """An input without what all inputs of a scene begin with, and its unit."""
+    inside, _, unit = name.removeprefix("scene.").partition(SHOWN_IN)
+    return f"{without_unit(inside.removeprefix('dimensional.'))} [{unit}]" if unit else inside
 
 
 def _row(inputs: dict[str, Any], rows: pd.DataFrame, curves: pd.DataFrame) -> str:
@@ -56,8 +63,8 @@ def _shape(row: pd.Series, curves: pd.DataFrame) -> str:
 
 def _drawing(rows: pd.DataFrame) -> str:
     """Mean friction over belt speed as a line of an SVG drawing, from zero up; nothing without two points."""
-    speed = next((name for name in reversed(BELT_SPEEDS) if name in rows), "")
-    told = rows[[speed, "mean_friction"]].dropna().sort_values(speed) if speed else rows.iloc[:0]
+    speed = belt_speed(rows.columns)
+    told = rows[[speed, "mean_friction"]].dropna().sort_values(speed) if speed in rows else rows.iloc[:0]
     if len(told) < 2:
         return ""
     x, y = told[speed].to_numpy(float), told["mean_friction"].to_numpy(float)

@@ -13,9 +13,10 @@ from pandas import DataFrame
 from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family
 from frictionlab.charts.figures import OTHER_FIGURES
+from frictionlab.columns import typeset
 from frictionlab.quantities import Written
 from frictionlab.report.facts import Facts
-from frictionlab.report.markup import symbol_html, unit_html, word_html
+from frictionlab.report.markup import html, symbol_html, unit_html, word_html
 from frictionlab.report.question import given_of, values_listed
 from frictionlab.report.tables import joined_values, setting
 from frictionlab.results.words import counted
@@ -126,7 +127,7 @@ def _held_and_missing(run: Facts) -> Iterator[Markup]:
     """The values of the scene that are the same in every point; how many points have no number but a mark."""
     study = run.saved.study
     fixed = [
-        Markup("{} = {}").format(symbol_html(name), value.text)
+        Markup("{} = {}").format(symbol_html(name), html(typeset(value.text)))
         if isinstance(value, Written)
         else setting(name, value)
         for name, value in given_of(study).items()

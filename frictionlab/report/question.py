@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
-from frictionlab.columns import SHOWN_IN, symbol, without_shown_unit, word
+from frictionlab.columns import SHOWN_IN, symbol, typeset, without_shown_unit, word
+from frictionlab.quantities import Written
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, number
@@ -193,7 +194,10 @@ def methods_grid(study: Study) -> Grid:
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
     """Its name where that says more than the label, the first line of its text, its parameters with their values."""
     told = [
-        Markup("{} = {}").format(symbol_html(f"law.{name}"), in_words(value))
+        Markup("{} = {}").format(
+            symbol_html(f"law.{name}"),
+            html(typeset(in_words(value))) if isinstance(value, Written) else in_words(value),
+        )
         for name, value in parameters.items()
         if value is not None
     ]

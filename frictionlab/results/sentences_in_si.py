@@ -33,7 +33,8 @@ def in_si_words(sentence: str, scales: Mapping[str, float]) -> str:
     for pattern, (scale, unit) in _PATTERNS.items():
         if scale in scales and (found := pattern.search(sentence)):
             value = float(found[1]) * scales[scale]
-            told = handy_unit(unit, abs(value)).text(value)
+            shown = handy_unit(unit, abs(value))  # sentences have six digits, of which scaling leaves five
+            told = f"{value / shown.size:.5g} {shown.unit}"
             sentence = f"{sentence[: found.start(1)]}{told}{sentence[found.end(1) :]}"
     return sentence
 

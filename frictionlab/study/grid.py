@@ -220,7 +220,8 @@ class StudyGrid:
             values |= {f"law.{name}": value for name, value in law.parameters.items()}
         for path, swept in self.sweep.items():
             name = path if path.startswith(SCENE) else f"law.{path.rpartition('.')[2]}"
-            values[name] = self.ranges[path].start if path in self.ranges else swept[0]
+            first = self.ranges[path].start if path in self.ranges else swept[0]
+            values |= {name: first} if isinstance(first, Written) else {}
         return units_written(values)
 
     @cached_property

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import matplotlib as mpl
+import matplotlib.figure
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, Kept, figures_of
+from frictionlab.charts.sheet import write_heading
 from frictionlab.charts.style import STYLE
 from frictionlab.results.summary import summary
 from frictionlab.results.table import whole
@@ -77,3 +80,20 @@ def test_shown_numbers_times_their_units_are_those_of_the_table(run: fl.Run) -> 
 )
 def test_a_handy_unit_has_a_number_of_readable_size(largest: float, unit: str) -> None:
     assert handy_unit("m", largest).unit == unit
+
+
+def test_numbers_without_a_unit_are_shown_in_that_of_the_scene() -> None:
+    body = {"mass": "0.5 kg", "stiffness": "5 kN/m", "damping": "5 N s/m", "belt_speed": "2 mm/s"}
+    scene = fl.Scene(dimensional=fl.Dimensional(**body, drive={"amplitude": "20 N", "frequency": "10 Hz"}))
+    found = fl.compare(scene, fl.Coulomb(mu=0.3), belt_speed=[0.01, 0.02])
+
+    assert found.plot().axes[0].get_xlabel() == "belt speed $V_b$ [mm/s]"
+
+
+def test_a_title_too_long_for_its_picture_takes_several_lines() -> None:
+    figure = mpl.figure.Figure(figsize=(3.0, 2.0))
+    figure.set_canvas(FigureCanvasAgg(figure))
+    axes = figure.add_subplot()
+    write_heading(axes, "load amplitude = 10 N, belt speed = 7.4 cm/s, law", 200.0)
+
+    assert axes.get_title(loc="left") == "load amplitude = 10 N,\nbelt speed = 7.4 cm/s, law"

@@ -23,7 +23,7 @@ class UnderWay:
 
     begun: float
     told_at: float
-    points: int = 0
+    points: float = 0.0
     seconds: float = 0.0
 
 
@@ -40,12 +40,12 @@ def told_to(under_way: UnderWay) -> Iterator[None]:
         _under_way.reset(token)
 
 
-def each_told(points: Iterable[Each]) -> Iterator[Each]:
-    """These points, each counted as answered when the next one is asked for."""
+def each_told(points: Iterable[Each], share: float = 1.0) -> Iterator[Each]:
+    """These, each counted as so much of a point answered when the next one is asked for."""
     now = _under_way.get()
     for each in points:
         yield each
         if now is not None:
-            now.points += 1
+            now.points += share
             now.told_at = time.perf_counter()
             now.seconds = now.told_at - seconds_compiling() - now.begun

@@ -27,7 +27,8 @@ class Forecast:
     """Points left of each kind, and what points of it took. is_over: whether nobody waits any longer."""
 
     def __init__(self, points: Iterable[tuple[PointKind, int]]) -> None:
-        self._left, self._solved = Counter[PointKind](), Counter[PointKind]()
+        self._left = Counter[PointKind]()
+        self._solved: defaultdict[PointKind, float] = defaultdict(float)
         self._seconds: defaultdict[PointKind, float] = defaultdict(float)
         for kind, count in points:
             self._left[kind] += count
@@ -58,7 +59,7 @@ class Forecast:
     @property
     def points_under_way(self) -> int:
         """Points answered in chunks that have not come back."""
-        return sum(now.points for key, now in list(under_way.items()) if key in self._sent)
+        return sum(int(now.points) for key, now in list(under_way.items()) if key in self._sent)
 
     def seconds_left(self) -> float:
         """Until all points are solved; NaN as long as nothing is known."""
@@ -68,9 +69,9 @@ class Forecast:
             waiting[work.kind] -= len(work.left)
             solved[work.kind] += now.points
             seconds[work.kind] += now.seconds
-        if not solved.total():
+        if not any(solved.values()):
             return math.nan
-        usual = sum(seconds.values()) / solved.total()
+        usual = sum(seconds.values()) / sum(solved.values())
         rate = {kind: seconds[kind] / solved[kind] if solved[kind] else usual for kind in waiting}
         clock, rests = time.perf_counter(), [0.0]
         for work, now in running:

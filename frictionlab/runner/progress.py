@@ -81,8 +81,9 @@ class Meter:
         new = self._done - self._at_first  # kernels are compiled once: that is not held against the points
         left = self._working / new * (self._total - self._done) if new else 0.0
         left = left if math.isnan(self._left) else self._left
-        facts = [f"compiling {kernel}"] if kernel else []
-        facts += [self._doing + count, *([f"about {spoken(left)} left"] if left > 0.5 else [])]
+        # how long kernels take to compile is not known
+        facts = [f"compiling {kernel}", self._doing + count] if kernel else [self._doing + count]
+        facts += [f"about {spoken(left)} left"] if left > 0.5 and not kernel else []
         return self._whose + ", ".join([*facts, f"{spoken(passed)} so far"])
 
     def _write(self, line: str) -> None:

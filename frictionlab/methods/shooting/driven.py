@@ -86,7 +86,7 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
     resting = [i for i in at_rest if stays_at_rest(scenes[i], law)]
     moving = [i for i in range(len(scenes)) if i not in resting]
     states.close_all(moving)
-    for i in each_told(moving) if not states.problem.goal.contracts else ():
+    for i in each_told(moving, 0.5) if not states.problem.goal.contracts else ():
         states.check_attraction(i)
     states.carry_on()
     for i in resting:
@@ -353,7 +353,7 @@ class SteadyStates:
         A state that only few starts reach may be reached by many at a neighbour, or be the neighbour's answer.
         """
         rising = sorted(self.followed)
-        for here, there in [*pairwise(rising), *pairwise(rising[::-1])]:
+        for here, there in each_told([*pairwise(rising), *pairwise(rising[::-1])], 0.25):
             if self.status[there] != "ok" or self.unique[there]:
                 continue
             followed = self.followed[there]

@@ -331,7 +331,7 @@ class Notes:
         elif not math.isfinite(value):
             self.add(path, f"must be a finite number, got {value_text(value)}")
         else:
-            return float(value)
+            return value if isinstance(value, float) else float(value)  # one with a unit keeps it
         return None
 
     def positive(self, value: Any, path: Path) -> float | None:

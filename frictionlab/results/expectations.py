@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import INPUTS, belt_speed
+from frictionlab.columns import BELT_SPEED, INPUTS, belt_speed
 from frictionlab.printable import with_error
 from frictionlab.results.words import counted, in_words
 from frictionlab.study import Expectation
@@ -89,7 +89,7 @@ def _comparator(expectation: Expectation) -> tuple[str, float]:
     for name in ("equals", "below", "above"):
         value = getattr(expectation, name)
         if value is not None:
-            return name, float(value)
+            return name, value
     raise ValueError("an expectation without a comparison")
 
 
@@ -163,7 +163,8 @@ def _first(rows: pd.DataFrame) -> str:
     row = rows.iloc[0]
     reason = f": {row['reason']}" if isinstance(row["reason"], str) and row["reason"] else ""
     speed = belt_speed(rows)
-    scene = f" at belt speed {in_words(row[speed])}" if speed in rows else ""
+    unit = "" if speed == BELT_SPEED else " m/s"
+    scene = f" at belt speed {in_words(row[speed])}{unit}" if speed in rows else ""
     return f"the row of {row['law']} by {row['method']}{scene}, {row['status']}{reason}"
 
 

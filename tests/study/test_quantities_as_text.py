@@ -137,3 +137,20 @@ def test_a_law_made_in_python_takes_texts_where_the_scene_has_units() -> None:
         fl.Study.of(plain, text)
     with pytest.raises(WrongValues, match=r"stiffness: .* contact_stiffness takes what is not per unit"):
         fl.Dahl(mu=0.3, stiffness="5 N/um")
+
+
+def test_a_verdict_names_numbers_as_they_were_written() -> None:
+    body = {**BODY, "belt_speed": "5 mm/s", "drive": {"amplitude": "20 N", "frequency": "60 Hz"}}
+    claim = {"where": {f"{HERE}belt_speed": "5 mm/s"}, "column": "mean_friction_N", "below": "1 mN"}
+    tree = {
+        "schema": 1,
+        "scene": {"dimensional": body},
+        "laws": [{"kind": "coulomb", "mu": 0.3}],
+        "expect": [claim],
+    }
+    study = parse_study(tree)
+
+    (verdict,) = fl.run(study).verdicts
+    assert "mean_friction_N below 1 mN" in verdict.sentence
+    assert "belt_speed_m_per_s 5 mm/s" in verdict.sentence
+    assert parse_study(study.resolved()) == study

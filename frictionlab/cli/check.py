@@ -38,15 +38,16 @@ def check_command(
     from frictionlab.runner import batch
     from frictionlab.runner.chunks import task_of
     from frictionlab.runner.plan import plan
-    from frictionlab.runner.price import prices
+    from frictionlab.runner.price import MOST, prices
 
     jobs = batch.jobs(study, None, overrides, law_files, plugins)
     planned = [(job.name, plan(job.study)) for job in jobs]
+    most = max(1.0, MOST / len(jobs))
     clock, processor = time.perf_counter(), time.process_time()
     with metered() as meter:
         meter.begins("timing", "points")
         priced = [
-            list(prices(list(job.study.foreseen().curves()), task_of(job.study), meter).values())
+            list(prices(list(job.study.foreseen().curves()), task_of(job.study), meter, most).values())
             for job in jobs
         ]
     # what other programs leave of a core

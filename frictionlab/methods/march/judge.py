@@ -28,7 +28,7 @@ from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.stability import friction_falls
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.methods.shooting.attractors import describe
-from frictionlab.methods.shooting.long_mean import SHARED, LongMean, spread_of_one_mean
+from frictionlab.methods.shooting.long_mean import DRIVEN, FREE, SHARED, LongMean, spread_of_one_mean
 from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -215,9 +215,9 @@ class MarchedPoint:
         found = mean_of_unrepeated(self.march, readable, others, long)
         self.status, self.error_kind = "ok", STATISTICAL
         self.orbit = partial(self._orbit, readable, 1)
-        window = LAPS_AVERAGED * self.march.periods
+        window = LAPS_AVERAGED * readable.period / readable.stride / self.march.drive_period
         self.answer = PointAnswer(complex(found.mean, math.nan), found.error, window=window)
-        self._remark(found.sentence(window))
+        self._remark(found.sentence(window, FREE if self.scene.undriven else DRIVEN))
 
     def _moves_on(self) -> bool:
         """Whether bristles that a moving belt drags along forget where the mass started."""

@@ -180,10 +180,13 @@ class MarchRun:
         return run
 
     def means_of_laps(self, run: MarchResult, laps: int) -> Floats:
-        """The mean friction along x1 of each of so many laps [laps], from the end of a run on."""
+        """The mean friction along x1 of each of so many laps [laps], from the end of a run on; of laps that differ in
+        length, moved so that their plain mean is that over time."""
         way = self._way(run.pace)._replace(most=laps, stride=laps)
         each = self._marched(run.pace, way, run.place).laps
-        return np.asarray(interpreted(mean_friction)(each.impulse.real, each.duration))
+        mean, lengths = interpreted(mean_friction), each.duration
+        whole = mean(float(each.impulse.real.sum()), float(lengths.sum()))
+        return np.asarray(whole + (mean(each.impulse.real, lengths) - whole) * lengths / lengths.mean())
 
     def track(self, run: MarchResult, laps: int) -> Orbit:
         """So many laps, from the end of a run that settled."""

@@ -42,7 +42,7 @@ from frictionlab.methods.shooting.attractors import (
     same_state,
     undamped,
 )
-from frictionlab.methods.shooting.long_mean import SHARED, spread_of_one_mean
+from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, spread_of_one_mean
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.methods.under_way import each_told
 from frictionlab.orbit.record import Orbit, Orbits
@@ -428,7 +428,7 @@ class SteadyStates:
         self.mean[i], self.error[i], self.error_kind[i] = mean, error, STATISTICAL
         self.states[i], self.spans[i] = found.points[-1], READ_OVER
         self.window[i] = found.followed * self.problem.common
-        self.reason[i] = found.average.sentence(float(self.window[i]))
+        self.reason[i] = found.average.sentence(float(self.window[i]), DRIVEN)
 
     def _add(self, i: int, said: str) -> None:
         """To the reason."""

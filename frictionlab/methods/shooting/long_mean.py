@@ -19,8 +19,9 @@ BLOCKS = 8
 """Parts of each motion whose means are compared; each long against the time in which motions forget."""
 WINDOWS = 4
 """Halves of a motion, overlapping, whose weighted means are compared."""
-REGULAR = 0.1
-"""How far apart weighted means of a quasi-periodic motion are, over what chaos would leave plain ones."""
+REGULAR, SETTLED = 0.1, 1e-3
+"""How far apart weighted means of a quasi-periodic motion are, over what chaos would leave plain ones, and over how
+much those of single periods scatter: chaos comes below the first alone now and then."""
 TWO_SIGMA = (math.inf, 13.97, 4.527, 3.307, 2.869, 2.649, 2.517, 2.429, 2.366, 2.320, 2.284, 2.255, 2.231)
 """Student's t of two standard deviations (95.45 %), by degrees of freedom; beyond, 2 (1 + 1.3/n) is within .01."""
 MOST_ALIKE = 0.9
@@ -28,6 +29,8 @@ MOST_ALIKE = 0.9
 SAME_MEAN, LEAST_APART = 1.5, 1e-6
 """Difference of two means, over what their errors together allow at two standard errors, that keeps them one; and the
 smallest that tells them apart."""
+DRIVEN, FREE = "drive periods", "periods of the free mass"
+"""What it is taken over."""
 SHARED = "states that differ have this mean: "
 """Said before a description of them."""
 
@@ -39,10 +42,10 @@ class LongMean(NamedTuple):
     error: float
     quasi_periodic: bool
 
-    def sentence(self, window: float) -> str:
+    def sentence(self, window: float, of: str) -> str:
         """What it is a mean of."""
         named = "quasi-periodic" if self.quasi_periodic else "chaotic"
-        return f"the motion does not repeat ({named}): its mean over {window:.0f} drive periods"
+        return f"the motion does not repeat ({named}): its mean over {window:.0f} {of}"
 
 
 def birkhoff_mean(values: Floats) -> float:
@@ -69,7 +72,7 @@ def long_mean(motions: Sequence[Floats]) -> LongMean:
         for half in _halves(each)
     )
     apart = max(halves, max(weighted) - min(weighted))
-    if apart <= REGULAR * error:
+    if apart <= min(REGULAR * error, SETTLED * float(np.concatenate(motions).std())):
         return LongMean(float(np.mean(weighted)), 2.0 * apart, True)
     return LongMean(float(np.mean(by_blocks)), error, False)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -19,9 +19,11 @@ import numpy as np
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.base import STATISTICAL, Answers, Status
 from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
+from frictionlab.methods.shooting.long_mean import FREE, LongMean, birkhoff_mean, long_mean
+from frictionlab.methods.shooting.long_motions import drifts
 from frictionlab.methods.shooting.undriven_cycle import (
     MOST_RETURNS,
     RETURN_DISTANCE,
@@ -54,8 +56,13 @@ SLIDES = "steady sliding, which attracts"
 SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
 STICKS = "a cycle of stick and slip"
 SLIPS = "a cycle of slip without rest"
+GOES_ON = "a motion that does not repeat"
 BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
+LOOKS_AVERAGED, SMALL_ERROR = (512, 1024, 2048), 1e-4
+"""Counts of looks after which a motion that comes to nothing is averaged, and the error that is small enough then."""
+TURNS_SHOWN = 64
+"""Of such a motion, from which columns other than the mean are read."""
 TRIALS = 10, 30, 100, 300, 1000
 """Counts of largest deflections after which a cycle is looked for however far apart they are."""
 FRICTION_SPREAD = 1e-4
@@ -68,7 +75,10 @@ MOST_TURNS, RESTING = 5000, 4
 
 
 class PeriodicMotion(NamedTuple):
-    """A periodic motion from a state: its period, mean friction, error and largest multiplier, and what it is."""
+    """A periodic motion from a state: its period, mean friction, error and largest multiplier, and what it is.
+
+    long: of a motion that does not repeat, its mean, over so many turns.
+    """
 
     state: Floats
     period: float
@@ -76,6 +86,8 @@ class PeriodicMotion(NamedTuple):
     error: float
     multiplier: float
     kind: str
+    long: LongMean | None = None
+    turns: float = math.nan
 
 
 class Reach(NamedTuple):
@@ -88,14 +100,22 @@ class Reach(NamedTuple):
 
 @dataclass
 class Way:
-    """A motion so far: its largest deflections, where it went of late, and the cycles found beside it."""
+    """A motion so far: its largest deflections, where it went of late, and the cycles found beside it.
+
+    means, states: the mean friction from each look to the next, and where that ended.
+    """
 
     returns: list[Return] = field(default_factory=list)
     reaches: list[Reach] = field(default_factory=list)
     cycles: list[Cycle] = field(default_factory=list)
+    means: list[float] = field(default_factory=list)
+    states: list[Floats] = field(default_factory=list)
 
-    def note(self, track: Track, turns: float) -> None:
+    def note(self, span: Span, turns: float) -> None:
         """One span more; those before the last two returns, or half of the way, are left out one at a time."""
+        self.means.append(mean_of(span))
+        self.states.append(span.end)
+        track = span.track
         since = self.returns[-3].turns if len(self.returns) > 2 else 0.5 * turns
         if self.reaches and self.reaches[0].turns <= since - BETWEEN_LOOKS:
             del self.reaches[0]
@@ -168,6 +188,8 @@ class Undriven:
             cycle = self._cycle_neared(way, state, span, turns)
             if cycle is not None:
                 return self._cycle(cycle)
+            if len(way.means) in LOOKS_AVERAGED and (motion := self._unrepeated(way)) is not None:
+                return motion
             state, turns = span.end, turns + BETWEEN_LOOKS
             self.effort.turns = turns
 
@@ -240,7 +262,7 @@ class Undriven:
 
     def _cycle_neared(self, way: Way, state: Floats, span: Span, turns: float) -> Cycle | None:
         """The cycle that the motion nears at one of the largest deflections of a span."""
-        way.note(span.track, turns)
+        way.note(span, turns)
         for peak in self._path.peaks(state, span.track, way.middle) if not self._conserves else ():
             way.returns.append(Return(peak.state, turns + peak.turns))
             cycle = self._reached_cycle(way.returns, way.cycles)
@@ -279,6 +301,31 @@ class Undriven:
         return PeriodicMotion(
             cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind
         )
+
+    # --- motions that do not repeat ---
+
+    def _unrepeated(self, way: Way) -> PeriodicMotion | None:
+        """The motion by its long mean, the first quarter left out; None where it is on its way elsewhere still."""
+        first = len(way.means) // 4
+        means, states = np.array(way.means[first:]), np.array(way.states[first - 1 :])
+        if drifts(np.linalg.norm(states - self._path.sliding, axis=1)):
+            return None
+        found = long_mean([means])
+        if found.quasi_periodic:  # nearer to each other than its parts are to the motion
+            finer = self._means(states[0], len(means), self._accuracy / FINER)
+            found = found._replace(error=found.error + 2.0 * abs(birkhoff_mean(finer) - birkhoff_mean(means)))
+        if found.error > max(self.tolerance, SMALL_ERROR) and len(way.means) < LOOKS_AVERAGED[-1]:
+            return None
+        turns = BETWEEN_LOOKS * len(means)
+        return PeriodicMotion(states[-1], math.nan, found.mean, found.error, math.nan, GOES_ON, found, turns)
+
+    def _means(self, state: Floats, looks: int, accuracy: float) -> Floats:
+        """Of friction from look to look."""
+        means = np.empty(looks)
+        for i in range(looks):
+            span = self._path.follow(state, BETWEEN_LOOKS, accuracy)
+            means[i], state = mean_of(span), span.end
+        return means
 
     # --- rest ---
 
@@ -320,18 +367,25 @@ class Undriven:
     def orbit(self, motion: PeriodicMotion) -> Orbit:
         """The orbit of the motion; of one that stands still, over 2 pi."""
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
+        turns = turns if motion.long is None else TURNS_SHOWN
         accuracy = max(0.1 * self.tolerance, LEAST)
         # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
         accuracy = accuracy / FINER if self._forgets else accuracy
         track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
         parts = track.tau, track.x, track.v, track.friction, track.stick
-        return Orbit(*(part[: track.filled[0]] for part in parts))
+        found = Orbit(*(part[: track.filled[0]] for part in parts))
+        return found if motion.long is None else replace(found, periods=TURNS_SHOWN)
+
+
+def mean_of(span: Span) -> float:
+    """The mean friction of one from a look to the next."""
+    return float(interpreted(mean_friction)(span.impulse, BETWEEN_LOOKS * TURN))
 
 
 def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer undriven scenes, each by the state it reaches from its start."""
-    numbers = np.full((5, len(scenes)), np.nan)
-    mean, error, period, multipliers, seconds = numbers
+    numbers = np.full((6, len(scenes)), np.nan)
+    mean, error, period, window, multipliers, seconds = numbers
     status: list[Status] = ["failed"] * len(scenes)
     reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
     found: dict[int, tuple[Undriven, PeriodicMotion]] = {}
@@ -348,7 +402,10 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
         status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
         mean[i], error[i] = motion.mean, motion.error
         period[i], multipliers[i] = motion.period / TURN, motion.multiplier
-        if not motion.error <= tolerance:
+        if motion.long is not None:
+            kind[i], window[i] = STATISTICAL, motion.turns
+            reason[i] = motion.long.sentence(motion.turns, FREE)
+        elif not motion.error <= tolerance:
             reason[i] = f"the error is above the tolerance {tolerance:.1e}"
     return Answers(
         status=status,
@@ -358,6 +415,7 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
         mean=mean,
         error=error,
         period=period,
+        window=window,
         floquet=lambda: multipliers,
         seconds=seconds,
         orbit=lambda i: found[i][0].orbit(found[i][1]) if i in found else None,

@@ -10,10 +10,13 @@ import pytest
 from answered import with_columns
 from hypothesis import example, given
 from hypothesis import strategies as st
+from profiles import deep
 from strategies import sizes
 
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting import undriven_path
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.shooting.undriven_path import UndrivenPath
@@ -177,6 +180,26 @@ def test_a_motion_beyond_the_bound_on_work_fails_and_says_how_far_it_came(monkey
     assert answers.status == ["failed"]
     assert answers.reason[0].startswith("no steady state within 30 steps: after ")
     assert "of the free mass it is at x = " in answers.reason[0]
+
+
+@deep("seconds of steps")
+def test_a_chaotic_motion_has_a_mean_over_a_long_time():
+    """Elasto-plastic friction that falls with speed: largest deflections of 4.10 to 4.15 in no order."""
+    law = ElastoPlastic(
+        mu_kinetic=0.2204466741226047,
+        presliding_length=0.057009254278563806,
+        mu_static=0.3296398650084521,
+        stribeck_speed=0.7492177440507438,
+        breakaway_ratio=0.7795848154749089,
+    )
+    one = Scene(damping_ratio=0.205363, normal_load=12.397955087610109, belt_speed=0.2219503420784626)
+    found = [with_columns(way, [one], law, 1e-3) for way in (Shooting(), March(stepper="rk4", steps=200))]
+    mean, error = ([float(each.columns[name][0]) for each in found] for name in ("mean_friction", "error"))
+    for each in found:
+        assert (each.status, each.error_kind) == (["ok"], ["statistical"])
+        assert "does not repeat (chaotic): its mean over 7" in each.reason[0]
+    assert max(error) < 5e-4
+    assert abs(mean[0] - mean[1]) < math.hypot(*error)
 
 
 def test_a_motion_that_hardly_leaves_steady_sliding_stays_there():

@@ -23,7 +23,7 @@ from frictionlab.methods.base import STATISTICAL, Answers, Status
 from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
 from frictionlab.methods.shooting.long_mean import FREE, LongMean, birkhoff_mean, long_mean
-from frictionlab.methods.shooting.long_motions import drifts
+from frictionlab.methods.shooting.long_motions import SMALL_ERROR, drifts
 from frictionlab.methods.shooting.undriven_cycle import (
     MOST_RETURNS,
     RETURN_DISTANCE,
@@ -59,8 +59,8 @@ SLIPS = "a cycle of slip without rest"
 GOES_ON = "a motion that does not repeat"
 BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
-LOOKS_AVERAGED, SMALL_ERROR = (512, 1024, 2048), 1e-4
-"""Counts of looks after which a motion that comes to nothing is averaged, and the error that is small enough then."""
+LOOKS_AVERAGED = 512, 1024, 2048
+"""Counts of looks after which a motion that comes to nothing is averaged."""
 TURNS_SHOWN = 64
 """Of such a motion, from which columns other than the mean are read."""
 TRIALS = 10, 30, 100, 300, 1000

@@ -56,7 +56,7 @@ SLIDES = "steady sliding, which attracts"
 SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
 STICKS = "a cycle of stick and slip"
 SLIPS = "a cycle of slip without rest"
-GOES_ON = "a motion that does not repeat"
+NEVER_REPEATS = "a motion that does not repeat"
 BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
 LOOKS_AVERAGED = 512, 1024, 2048
@@ -317,7 +317,9 @@ class Undriven:
         if found.error > max(self.tolerance, SMALL_ERROR) and len(way.means) < LOOKS_AVERAGED[-1]:
             return None
         turns = BETWEEN_LOOKS * len(means)
-        return PeriodicMotion(states[-1], math.nan, found.mean, found.error, math.nan, GOES_ON, found, turns)
+        return PeriodicMotion(
+            states[-1], math.nan, found.mean, found.error, math.nan, NEVER_REPEATS, found, turns
+        )
 
     def _means(self, state: Floats, looks: int, accuracy: float) -> Floats:
         """Of friction from look to look."""

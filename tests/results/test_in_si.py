@@ -62,6 +62,18 @@ def test_no_number_in_si_units_depends_on_the_length_scale() -> None:
         )
 
 
+def test_orbits_are_scaled_by_length_natural_frequency_and_stiffness() -> None:
+    """L = 1 mm, omega_1 = 100 rad/s, K_1 = 5 kN/m."""
+    body = STUDY["scene"]["dimensional"] | {"belt_speed": "50 mm/s"}  # type: ignore[index]
+    orbit = fl.steady_state(fl.Scene(dimensional=fl.Dimensional(**body)), fl.Coulomb(mu=0.3)).orbit(8)
+
+    scales = {"tau": 1e-2, "x1": 1e-3, "v1": 0.1, "slip": 0.1, "load": 5.0, "normal_load": 5.0, "work": 5e-3}
+    for name, scale in scales.items():
+        assert orbit[ALSO_IN_SI[name][0]].to_numpy() == pytest.approx(
+            scale * orbit[name].to_numpy(), rel=1e-12
+        )
+
+
 @pytest.mark.parametrize("words", TOLD)
 def test_a_sentence_with_a_number_in_the_scales_of_the_scene_is_said_somewhere(words: str) -> None:
     """Where a sentence changes, its numbers would stay nondimensional."""

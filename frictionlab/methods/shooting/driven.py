@@ -371,10 +371,12 @@ class SteadyStates:
         reached = followed.reached
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
-        if not unique and scene.initial is None and not math.isnan(spread := self._spread(reached)):
-            self._accept(i, next((one for one in reached if one.average), first))
+        if not unique and scene.initial is None and (shared := self._shared(reached)) is not None:
+            found, spread = shared
+            self._accept(i, found)
             self.error[i] += spread
-            self._add(i, SHARED + describe(reached))
+            said = f"{self.reason[i]}; " if found.curve is None else ""
+            self.reason[i] = said + SHARED + describe(reached)
             self.unique[i] = NOT_UNIQUE
             return
         if not math.isnan(first.mean) and (unique or scene.initial is not None):
@@ -407,11 +409,15 @@ class SteadyStates:
         self._leave_open(i, f"{why}: {describe(reached)}", low, high)
         self.window[i] = max(one.averaged_over for one in reached) * problem.common
 
-    def _spread(self, reached: Sequence[Attractor]) -> float:
-        """Of the means of all, where that passes for one number."""
-        long = any(one.average for one in reached)
-        tolerance = 0.0 if long else self.problem.goal.tolerance
-        return spread_of_one_mean([one.mean for one in reached], [one.error for one in reached], tolerance)
+    def _shared(self, reached: Sequence[Attractor]) -> tuple[Attractor, float] | None:
+        """A state whose mean passes for that of all, a closed orbit where the tolerance allows, and their spread."""
+        means, errors = [one.mean for one in reached], [one.error for one in reached]
+        for there, tolerance in (("curve", self.problem.goal.tolerance), ("average", 0.0)):
+            found = next((one for one in reached if getattr(one, there) is not None), None)
+            spread = spread_of_one_mean(means, errors, tolerance)
+            if found is not None and not math.isnan(spread):
+                return found, spread
+        return None
 
     def _accept(self, i: int, found: Attractor) -> None:
         """Answer by where the starts lead."""

@@ -216,6 +216,23 @@ def test_the_period_counts_those_in_which_the_belt_carries_the_mass_at_rest():
     assert abs(row["mean_friction"] - motion.means[-21:].mean()) <= row["error"] + 1e-8
 
 
+def test_where_a_start_nears_an_orbit_but_does_not_close_it_its_mean_is_that_of_the_orbit():
+    one = Scene(
+        damping_ratio=0.013511484023561983,
+        normal_load=14.694037970813984,
+        belt_speed=0.4392029657339092,
+        drive=Drive(amplitude=8.836414496611217, phase=260.1610537498479, frequency=2.478875531473216),
+    )
+    law = Coulomb(mu=0.5265775383087952, mu_static=0.9355541855548389)
+    answers, row = solve(one, law, 1e-6)
+    assert (answers.status, answers.error_kind, answers.unique) == (["ok"], ["estimated"], ["no"])
+    assert "states that differ have this mean: an orbit of 2 drive periods" in answers.reason[0]
+    assert row["period"] == 2.0
+    problem = PeriodicProblem(one, law, 1e-6)
+    motion = problem.followed_on(one.belt_speed, problem.state_at(one.belt_speed, None), 600, 1e-9)
+    assert abs(row["mean_friction"] - motion.means[-2:].mean()) <= row["error"] + 1e-8
+
+
 def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     one, law = chaotic(0.1)
     answers, row = solve(one, law)

@@ -133,7 +133,15 @@ def grouped(chosen: Callable[[str, str, str], bool]) -> dict[str, list[tuple[str
 DEEPER = {
     f"{scene}, {law}": [p for p in points() if p[:2] == (scene, law)] for scene in SCENES for law in LAWS
 }
-CHOSEN = DEEPER if DEEP else grouped(few)
+
+
+def drawn(scene: str, law: str, special: str) -> bool:
+    """One in twelve of all, with every scene, every law and all that makes a point special."""
+    places = list(SCENES).index(scene), list(LAWS).index(law), list(SPECIAL).index(special)
+    return (2 * places[0] + places[1] + 5 * places[2]) % 12 == 0
+
+
+CHOSEN = grouped(lambda *point: few(*point) or (DEEP and drawn(*point)))
 
 
 @pytest.mark.parametrize("group", CHOSEN)

@@ -130,11 +130,6 @@ def grouped(chosen: Callable[[str, str, str], bool]) -> dict[str, list[tuple[str
     return {group: found for group, found in groups.items() if found}
 
 
-DEEPER = {
-    f"{scene}, {law}": [p for p in points() if p[:2] == (scene, law)] for scene in SCENES for law in LAWS
-}
-
-
 def drawn(scene: str, law: str, special: str) -> bool:
     """One in twelve of all, with every scene, every law and all that makes a point special."""
     places = list(SCENES).index(scene), list(LAWS).index(law), list(SPECIAL).index(special)

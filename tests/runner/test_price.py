@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -11,26 +9,19 @@ import numpy as np
 import pytest
 from fake_methods import Another, Fake, register
 
-import frictionlab as fl
 from frictionlab.compile.call import KernelCall, NotKept
 from frictionlab.methods.base import Answers
-from frictionlab.methods.under_way import UnderWay, each_told
-from frictionlab.runner.chunks import task_of
+from frictionlab.methods.under_way import UnderWay
+from frictionlab.runner.chunks import Chunk, task_of
 from frictionlab.runner.forecast import Forecast
 from frictionlab.runner.price import Price, prices, solving_seconds
 from frictionlab.study import parse_study
 
 
 class Slow(Fake):
-    """Takes longest at low belt speeds, and tells how far it is."""
+    """Takes longest at low belt speeds."""
 
     name: ClassVar[str] = "slow"
-    pauses: ClassVar[tuple[float, float]] = 0.06, 0.01
-
-    def solve(self, scenes: Sequence[fl.Scene], law: fl.FrictionLaw, tolerance: float) -> Answers:
-        for scene in each_told(scenes):
-            time.sleep(self.pauses[scene.belt_speed > 4.0])
-        return super().solve(scenes, law, tolerance)
 
 
 class Unknown(Another):
@@ -62,13 +53,19 @@ def priced(**changes: Any) -> list[Price]:
     return list(prices(list(study.curves()), task_of(study)).values())
 
 
-def test_a_few_points_of_every_kind_tell_what_all_will_take() -> None:
+def told(chunk: Chunk) -> float:
+    """The seconds of a clock that is made up."""
+    slow = np.where(chunk.scenes.belt_speeds > 4.0, 0.01, 0.06)
+    return float(slow.sum()) if chunk.method.name == "slow" else 1e-4 * len(chunk.rows)
+
+
+def test_a_few_points_of_every_kind_tell_what_all_will_take(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("frictionlab.runner.price._time", told)
     quick, slow = priced()
-    paused = sum(Slow.pauses[bool(speed > 4.0)] for speed in np.linspace(1.0, 10.0, 30))
 
     assert 2 < slow.measured < 30
-    assert quick.seconds < 0.2 * slow.seconds
-    assert paused / 2.0 < slow.seconds == slow.longest < 2.0 * paused
+    assert quick.seconds == pytest.approx(30 * 1e-4)
+    assert 0.8 / 1.5 < slow.seconds == slow.longest < 0.8 * 1.5
     assert solving_seconds([quick, slow]) >= quick.start + slow.longest
 
 

@@ -17,7 +17,7 @@ from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.workers import OverLimit, within
 from frictionlab.study import StudyCurve
 
-FEWEST, USUAL, MOST = 0.3, 2.5, 12.0
+FEWEST, USUAL, MOST = 0.3, 1.0, 5.0
 """Seconds spent on points: in any case, if the price is then still ``UNSURE``, and if it is large beside them."""
 SHARE, UNSURE = 0.1, 0.25
 """Of the price: what is spent to know it, and its standard error where it is known well enough."""

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from answered import with_columns
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
@@ -107,6 +108,7 @@ def test_a_bristle_that_never_yields_on_a_belt_at_rest_has_no_mean_of_its_own() 
     assert abs(drifts.columns["mean_friction"][0]) <= drifts.columns["error"][0]
 
 
+@deep("eighteen starts on stiff bristles")
 def test_a_steep_fall_on_stiff_bristles_responds_as_without_them() -> None:
     """S11: four drive periods."""
     scene = fl.Scene(

@@ -36,6 +36,7 @@ from frictionlab.methods.shooting.undriven_cycle import (
 from frictionlab.methods.shooting.undriven_path import (
     FOLLOWED,
     LEAST,
+    MOST_CLOSING,
     PANELS_AT_FIRST,
     TURN,
     Effort,
@@ -59,8 +60,8 @@ SLIPS = "a cycle of slip without rest"
 NEVER_REPEATS = "a motion that does not repeat"
 BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
-LOOKS_AVERAGED = 512, 1024, 2048
-"""Counts of looks after which a motion that comes to nothing is averaged."""
+LOOKS_AVERAGED, FEWEST_LOOKS = (512, 1024, 2048), 128
+"""Counts of looks after which a motion that comes to nothing is averaged, and the fewest that are."""
 TURNS_SHOWN = 64
 """Of such a motion, from which columns other than the mean are read."""
 TRIALS = 10, 30, 100, 300, 1000
@@ -166,10 +167,24 @@ class Undriven:
 
     def motion(self) -> PeriodicMotion:
         """The motion reached from the start. Raises NotFound."""
-        path = self._path
-        if path.speed == 0.0:
+        if self._path.speed == 0.0:
             return self._at_rest()
-        state, turns, steady, forgets, way = path.start, 0.0, 0, self._forgets, Way()
+        way = Way()
+        try:
+            return self._followed(way)
+        except NotFound:
+            if len(way.means) < FEWEST_LOOKS:
+                raise
+            self.effort.work = 0  # as much again for what the error needs
+            motion = self._unrepeated(way)
+            if motion is None:
+                raise
+            return motion
+
+    def _followed(self, way: Way) -> PeriodicMotion:
+        """Where the motion from the start leads on a moving belt. Raises NotFound."""
+        path = self._path
+        state, turns, steady, forgets = path.start, 0.0, 0, self._forgets
         while True:
             if self._loses_energy(state):
                 return self._sliding()
@@ -188,8 +203,12 @@ class Undriven:
             cycle = self._cycle_neared(way, state, span, turns)
             if cycle is not None:
                 return self._cycle(cycle)
-            if len(way.means) in LOOKS_AVERAGED and (motion := self._unrepeated(way)) is not None:
-                return motion
+            if len(way.means) in LOOKS_AVERAGED:
+                motion = self._unrepeated(way)
+                if motion is not None and motion.error <= max(self.tolerance, SMALL_ERROR):
+                    return motion
+                if len(way.means) == LOOKS_AVERAGED[-1]:
+                    raise NotFound(f"no steady state within {turns:.0f} periods: {path.whereabouts(state)}")
             state, turns = span.end, turns + BETWEEN_LOOKS
             self.effort.turns = turns
 
@@ -263,11 +282,15 @@ class Undriven:
     def _cycle_neared(self, way: Way, state: Floats, span: Span, turns: float) -> Cycle | None:
         """The cycle that the motion nears at one of the largest deflections of a span."""
         way.note(span, turns)
-        for peak in self._path.peaks(state, span.track, way.middle) if not self._conserves else ():
+        if self._conserves or self.effort.closing > MOST_CLOSING:
+            return None
+        before = self.effort.work
+        for peak in self._path.peaks(state, span.track, way.middle):
             way.returns.append(Return(peak.state, turns + peak.turns))
             cycle = self._reached_cycle(way.returns, way.cycles)
             if cycle is not None:
                 return cycle
+        self.effort.closing += self.effort.work - before
         return None
 
     def _reached_cycle(self, returns: list[Return], cycles: list[Cycle]) -> Cycle | None:
@@ -314,8 +337,6 @@ class Undriven:
         if found.quasi_periodic:  # nearer to each other than its parts are to the motion
             finer = self._means(states[0], len(means), self._accuracy / FINER)
             found = found._replace(error=found.error + 2.0 * abs(birkhoff_mean(finer) - birkhoff_mean(means)))
-        if found.error > max(self.tolerance, SMALL_ERROR) and len(way.means) < LOOKS_AVERAGED[-1]:
-            return None
         turns = BETWEEN_LOOKS * len(means)
         return PeriodicMotion(
             states[-1], math.nan, found.mean, found.error, math.nan, NEVER_REPEATS, found, turns

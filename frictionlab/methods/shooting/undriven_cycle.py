@@ -17,19 +17,21 @@ from frictionlab.methods.periodic.fixed_point import FINER, stated_error
 from frictionlab.methods.shooting.undriven_path import LEAST, TURN, Return, UndrivenPath
 from frictionlab.quantities import Floats
 
-COARSEST_CLOSED = 1e-6
-"""The coarsest accuracy, per normal load, of maps that close a cycle."""
+COARSEST_CLOSED, OF_BELT_SPEED = 1e-6, 1e-5
+"""The coarsest accuracy of maps that close a cycle, per normal load and per belt speed."""
 INSTANT = 1e-7
 """Turns over which rates of a state are quotients."""
-MOST_NEWTON = 16
+MOST_NEWTON, MOST_DERIVATIVES = 16, 4
+"""Steps of Newton's method, and how often derivatives are found anew for them."""
 CHANCE = 0.15
 """Of the difference between the two coarser means, stands in where the two finer agree by chance."""
 
 
 RETURN_DISTANCE = 0.05
 """How near to each other two largest deflections must come to close a cycle from them [distances to sliding]."""
-CONVERGED_DISTANCE = 1e-6
-"""How near a motion must come to what attracts it to be there without further proof."""
+CONVERGED_DISTANCE, STRONGLY_DISTANCE = 1e-6, 3e-5
+"""How near a motion must come to what attracts it to be there without further proof; and to what halves its distance
+each time, where the steps on the way may leave it farther off."""
 MOST_RETURNS = 4
 """Largest deflections in one period."""
 
@@ -42,7 +44,8 @@ def nears(orbit: KnownOrbit, before: Floats, after: Floats) -> bool:
 
 def is_there(orbit: KnownOrbit, state: Floats) -> bool:
     """Whether a state is so near to an orbit that attracts that the motion ends on it."""
-    near = CONVERGED_DISTANCE * (1.0 + float(np.linalg.norm(orbit.state)))
+    share = STRONGLY_DISTANCE if orbit.gap > 0.5 else CONVERGED_DISTANCE
+    near = share * (1.0 + float(np.linalg.norm(orbit.state)))
     return bool(orbit.gap > CONVERGED_DISTANCE and float(np.linalg.norm(state - orbit.state)) < near)
 
 
@@ -100,7 +103,8 @@ def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | 
     Its mean is that of the last of three or more closed cycles, each of maps FINER times finer than the one before.
     Raises NotFound.
     """
-    accuracy, means, error = max(min(tolerance, COARSEST_CLOSED), LEAST), list[float](), math.inf
+    coarsest = min(COARSEST_CLOSED, OF_BELT_SPEED * abs(path.speed) / path.mass.normal_load)
+    accuracy, means, error = max(min(tolerance, coarsest), LEAST), list[float](), math.inf
     state = guess.state.copy()
     state[1] = 0.0
     at = Cycle(state, guess.turns, math.nan, math.inf, np.empty((0, 0)))
@@ -121,7 +125,7 @@ def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | 
 
 def _newton(path: UndrivenPath, at: Cycle, linear: Linear, accuracy: float) -> tuple[Cycle | None, Linear]:
     """The cycle by maps of one accuracy, its error what the last step has moved the mean by; the derivatives used."""
-    (state, turns, mean, _, _), size = at, math.inf
+    (state, turns, mean, _, _), size, derivatives = at, math.inf, 0
     for count in range(MOST_NEWTON):
         span = path.follow(state, turns, accuracy)
         before, mean = mean, float(interpreted(mean_friction)(span.impulse, turns * TURN))
@@ -129,7 +133,8 @@ def _newton(path: UndrivenPath, at: Cycle, linear: Linear, accuracy: float) -> t
         late = -float(span.end[1] / linear.rates[1])
         step = linear.inverse @ (span.end + late * linear.rates - state)
         step[1] = 0.0
-        last, size = size, float(np.abs(step).max()) + abs(late)
+        # as a way in the states: where the motion lingers at its largest deflection, the instant is hardly known
+        last, size = size, float(np.abs(step).max() + abs(late) * np.abs(linear.rates).max())
         if not size < 1.0 + np.abs(state).max():
             break
         # steps that shrink no more are what the steps of a map jump about by
@@ -141,6 +146,9 @@ def _newton(path: UndrivenPath, at: Cycle, linear: Linear, accuracy: float) -> t
         if not turns > 0.0:
             break
         if size > 0.3 * last:
+            derivatives += 1
+            if derivatives > MOST_DERIVATIVES:
+                break
             linear = _linearize(path, at._replace(state=state, turns=turns))
     return None, linear
 

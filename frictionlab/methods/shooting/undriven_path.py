@@ -36,6 +36,8 @@ SPEEDING_UP = 1e-12
 """Time after which a start is seen that has no acceleration: slip has a direction by then."""
 MOST_WORK = 2_000_000
 """Steps after which no motion is followed any longer, some seconds of them."""
+MOST_CLOSING = MOST_WORK // 2
+"""Of these, steps after which no cycle is looked for any longer: a motion that goes on is averaged."""
 PANELS_AT_FIRST = 128
 """Panels that a track has room for at first."""
 MOST_PEAKS = 8
@@ -44,9 +46,11 @@ MOST_PEAKS = 8
 
 @dataclass
 class Effort:
-    """What following a motion has taken so far [steps], how far it has led [turns], and kernel time [s]."""
+    """What following a motion has taken so far [steps], and closing cycles of that, how far it has led [turns], and
+    kernel time [s]."""
 
     work: int = 0
+    closing: int = 0
     turns: float = 0.0
     seconds: float = 0.0
 

@@ -15,6 +15,7 @@ from strategies import sizes
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting import undriven_path
@@ -180,6 +181,26 @@ def test_a_motion_beyond_the_bound_on_work_fails_and_says_how_far_it_came(monkey
     assert answers.status == ["failed"]
     assert answers.reason[0].startswith("no steady state within 30 steps: after ")
     assert "of the free mass it is at x = " in answers.reason[0]
+
+
+@pytest.mark.parametrize(
+    ("belt_speed", "by_rk4", "period"), [(0.005, (0.306923027, 2.2e-4), 6.38523), (0.0125, None, None)]
+)
+def test_a_slow_belt_drags_a_mass_on_bristles_from_stick_to_slip(belt_speed, by_rk4, period):
+    """It lingers at its largest deflection: that instant is hardly known. At the higher speed no cycle attracts."""
+    law = LuGre(mu_kinetic=0.3, presliding_length=2.5e-4, mu_static=0.4, stribeck_speed=2.5e-3)
+    one = Scene(damping_ratio=0.05, normal_load=1.0, belt_speed=belt_speed)
+    answers = with_columns(Shooting(), [one], law, 1e-6)
+    row = {name: float(column[0]) for name, column in answers.columns.items()}
+    assert answers.status == ["ok"]
+    assert row["error"] < 1e-5
+    if by_rk4 is None:
+        assert "does not repeat" in answers.reason[0]
+        assert 0.3 < row["mean_friction"] < 0.306923027
+        return
+    mean, error = by_rk4
+    assert abs(row["mean_friction"] - mean) < min(1e-6, row["error"] + error)
+    assert row["period"] == pytest.approx(period, abs=1e-4)
 
 
 @deep("seconds of steps")

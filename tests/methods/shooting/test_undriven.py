@@ -183,10 +183,8 @@ def test_a_motion_beyond_the_bound_on_work_fails_and_says_how_far_it_came(monkey
     assert "of the free mass it is at x = " in answers.reason[0]
 
 
-@pytest.mark.parametrize(
-    ("belt_speed", "by_rk4", "period"), [(0.005, (0.306923027, 2.2e-4), 6.38523), (0.0125, None, None)]
-)
-def test_a_slow_belt_drags_a_mass_on_bristles_from_stick_to_slip(belt_speed, by_rk4, period):
+@pytest.mark.parametrize("belt_speed", [0.005, pytest.param(0.0125, marks=deep("ten seconds"))])
+def test_a_slow_belt_drags_a_mass_on_bristles_from_stick_to_slip(belt_speed):
     """It lingers at its largest deflection: that instant is hardly known. At the higher speed no cycle attracts."""
     law = LuGre(mu_kinetic=0.3, presliding_length=2.5e-4, mu_static=0.4, stribeck_speed=2.5e-3)
     one = Scene(damping_ratio=0.05, normal_load=1.0, belt_speed=belt_speed)
@@ -194,12 +192,12 @@ def test_a_slow_belt_drags_a_mass_on_bristles_from_stick_to_slip(belt_speed, by_
     row = {name: float(column[0]) for name, column in answers.columns.items()}
     assert answers.status == ["ok"]
     assert row["error"] < 1e-5
-    if by_rk4 is None:
+    if belt_speed > 0.01:
         assert "does not repeat" in answers.reason[0]
         assert 0.3 < row["mean_friction"] < 0.306923027
         return
-    mean, error = by_rk4
-    assert abs(row["mean_friction"] - mean) < min(1e-6, row["error"] + error)
+    by_rk4, period = 0.306923027, 6.38523  # marched with 4,000 steps per period
+    assert abs(row["mean_friction"] - by_rk4) < 1e-6
     assert row["period"] == pytest.approx(period, abs=1e-4)
 
 

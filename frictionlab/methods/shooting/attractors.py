@@ -355,11 +355,16 @@ def found_state(
     return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from, share)
 
 
-def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
-    """The orbit at the end of a way, or the spread of what never repeats."""
+def orbit_at_the_end(
+    problem: PeriodicProblem, scene: Scene, way: Transient, alike: float = math.inf
+) -> tuple[Attractor, float]:
+    """The orbit at the end of a way, or the spread of what never repeats.
+
+    alike: an orbit of fewer periods is looked for where states that far apart in time are as near, over their size.
+    """
     seconds = 0.0
     if way.period > 0:
-        curve, period, seconds = _shortest(problem, scene, way)
+        curve, period, seconds = _shortest(problem, scene, way, alike)
         means = curve.closed.mean  # of finer maps than those on the way
         points: Floats = curve.states
         if period > 1 and curve.closed.found[0]:
@@ -383,10 +388,20 @@ def undamped(scene: Scene) -> bool:
     return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
 
 
-def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:
+def ends_on(state: Floats, period: int, orbit: Attractor) -> bool:
+    """Whether a state is beside one of a closed orbit of so many periods."""
+    return orbit.period == period and any(_beside(state, point) for point in orbit.points)
+
+
+def _shortest(
+    problem: PeriodicProblem, scene: Scene, way: Transient, alike: float
+) -> tuple[Curve, int, float]:
     """The orbit at the end of a way, and its periods: fewer than seen where the motion was still alternating."""
     curve, seconds = problem.close([scene], way.state, way.period)
+    near = alike * max(1.0, float(np.abs(way.state).max()))
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
+        if len(way.states) > period and np.abs(way.state - way.states[-1 - period]).max() > near:
+            continue
         shorter, more = problem.close([scene], curve.states[0], period)
         seconds += more
         both = curve.closed.found[0] and shorter.closed.found[0]

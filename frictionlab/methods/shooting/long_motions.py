@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from frictionlab.methods.shooting.attractors import (
     Attractor,
     FollowedStarts,
     carried_for,
+    ends_on,
     orbit_at_the_end,
 )
 from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
@@ -31,6 +33,9 @@ ACCURACY, FINER = 1e-7, 1e-9
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
 
+ALIKE = 1e-3
+"""How near states are, over their size, between which fewer periods are tried for an orbit."""
+
 
 class LongMotion:
     """One motion that has not repeated, and the means of its periods since it was followed on.
@@ -46,15 +51,17 @@ class LongMotion:
         self.end: Attractor | None = None
         self.seconds = 0.0
 
-    def follow(self, length: int) -> None:
-        """On to so many periods in all, and to its end where it turns out to repeat."""
+    def follow(self, length: int, known: Sequence[Attractor] = ()) -> None:
+        """On to so many periods in all, and to its end where it turns out to repeat; known: ends of others."""
         way = self._way(self.states[-1], length - len(self.means), ACCURACY)
         self.means, self.states = np.concatenate([self.means, way.means]), way.states
         self.sizes = np.concatenate([self.sizes, np.linalg.norm(way.states, axis=1)])
         period = late_period(self.states)
         if period:
+            self.end = next((one for one in known if ends_on(way.state, period, one)), None)
+        if period and self.end is None:
             found = Transient(period, way.means, way.states, way.state, 0.0)
-            end, more = orbit_at_the_end(self._problem, self._scene, found)
+            end, more = orbit_at_the_end(self._problem, self._scene, found, ALIKE)
             self.end = end if end.curve is not None else None
             self.seconds += more
 
@@ -115,7 +122,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
     for length in LENGTHS:
         for motion in motions.values():
             if motion.may_go_on:
-                motion.follow(length)
+                motion.follow(length, [one.end for one in motions.values() if one.end is not None])
         means = _means(motions)
         open_ = [place for place, motion in motions.items() if motion.end is None]
         enough = max(problem.goal.tolerance, SMALL_ERROR)

@@ -33,7 +33,7 @@ ACCURACY, FINER = 1e-7, 1e-9
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
 
-ALIKE = 1e-3
+NEARLY_REPEATED = 1e-3
 """How near states are, over their size, between which fewer periods are tried for an orbit."""
 
 
@@ -61,7 +61,7 @@ class LongMotion:
             self.end = next((one for one in known if ends_on(way.state, period, one)), None)
         if period and self.end is None:
             found = Transient(period, way.means, way.states, way.state, 0.0)
-            end, more = orbit_at_the_end(self._problem, self._scene, found, ALIKE)
+            end, more = orbit_at_the_end(self._problem, self._scene, found, NEARLY_REPEATED)
             self.end = end if end.curve is not None else None
             self.seconds += more
 

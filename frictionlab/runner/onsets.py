@@ -111,10 +111,10 @@ def _onsets_of_multipliers(curve: StudyCurve, rows: pd.DataFrame, tolerance: flo
 
     speeds = curve.scenes.belt_speeds
     period, modulus = (rows[name].to_numpy(dtype=float) for name in OF_MULTIPLIERS[1:])
-    attracts = (
-        (rows["status"] == "ok").to_numpy() & (period == curve.scenes.scene.periods) & ~(modulus >= 1.0)
-    )
-    answered = (attracts | (rows["status"] == "not_unique").to_numpy() | (modulus >= 1.0)) & (speeds > 0.0)
+    ok = (rows["status"] == "ok").to_numpy()
+    attracts = ok & (period == curve.scenes.scene.periods) & ~(modulus >= 1.0)
+    # where motions end on an orbit of several periods, or never repeat, that of one period does not attract
+    answered = (ok | (rows["status"] == "not_unique").to_numpy() | (modulus >= 1.0)) & (speeds > 0.0)
     known = {
         float(speeds[i]): StabilityRow(float(speeds[i]), bool(attracts[i])) for i in np.flatnonzero(answered)
     }

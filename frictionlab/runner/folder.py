@@ -290,11 +290,13 @@ def _brief(line: str, others: Sequence[str]) -> str:
     """Of a long line the part, from a word on, in which it leaves the line most like it."""
     if len(line.strip()) <= SHOWN:
         return line.strip()
-    start = line.rfind(" ", 0, max(0, _equal(line, others) - SHOWN // 2)) + 1
+    differs = _equal(line, others)
+    start = line.rfind(" ", 0, max(0, differs - SHOWN // 2)) + 1
     if line[:start].endswith(": "):  # a value without its key is unclear
         start = line.rfind(" ", 0, start - 1) + 1
-    begins = f"{line.split(':')[0].strip()}: ... " if start else ""
-    return f"{begins}{line[start : start + SHOWN].strip()}{' ...' if len(line) > start + SHOWN else ''}"
+    begins = f"{line.split(':')[0].strip()}: ... " if line[:start].strip() else ""
+    stop = max(start + SHOWN, differs + SHOWN // 4)
+    return f"{begins}{line[start:stop].strip()}{' ...' if len(line) > stop else ''}"
 
 
 def _equal(line: str, others: Sequence[str]) -> int:

@@ -124,7 +124,7 @@ def run(part: int) -> int:
     more = {"HYPOTHESIS_PROFILE": "deep", "DEEP_PART": str(part), "PYTHONPATH": path}
     words, begun = FOLDER / f"part{part}.txt", time.perf_counter()
     with words.open("w", encoding="utf-8") as file:
-        command = [sys.executable, "-m", "pytest", "-p", "deep", "--durations=30"]
+        command = [sys.executable, "-m", "pytest", "-vv", "-p", "deep", "--durations=30"]
         code = subprocess.run(
             command, cwd=PROJECT, env=os.environ | more, stdout=file, stderr=file
         ).returncode

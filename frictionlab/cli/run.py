@@ -262,7 +262,8 @@ def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
 def _how_far(result: Run) -> str:
     done = result.size - result.counts.get("killed", 0)
     kept = f" and kept in {result.folder}" if result.folder and done else ""
-    return f"interrupted: {done} of {result.size} points are done{kept}; the same command continues"
+    told = f"interrupted: {done} of {result.size} points are done{kept}; the same command continues"
+    return f"{told} with the pieces of curves that were not finished"
 
 
 def _show(result: Run) -> None:

@@ -217,8 +217,8 @@ def test_a_chaotic_motion_has_a_mean_over_a_long_time():
     for each in found:
         assert (each.status, each.error_kind) == (["ok"], ["statistical"])
         assert "does not repeat (chaotic): its mean over 7" in each.reason[0]
-    assert max(error) < 5e-4
-    assert abs(mean[0] - mean[1]) < math.hypot(*error)
+    assert max(error) < 2e-3
+    assert abs(mean[0] - mean[1]) < sum(error)
 
 
 def test_a_motion_that_hardly_leaves_steady_sliding_stays_there():

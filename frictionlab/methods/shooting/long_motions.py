@@ -32,7 +32,6 @@ ACCURACY, FINER = 1e-7, 1e-9
 """Of the maps of these periods, over the normal load; and of those that tell what they may be off by."""
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
-
 NEARLY_REPEATED = 1e-3
 """How near states are, over their size, between which fewer periods are tried for an orbit."""
 

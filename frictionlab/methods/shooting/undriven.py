@@ -43,6 +43,7 @@ from frictionlab.methods.shooting.undriven_path import (
     NotFound,
     Return,
     Span,
+    TooMuchWork,
     UndrivenPath,
 )
 from frictionlab.methods.under_way import each_told
@@ -103,7 +104,7 @@ class Reach(NamedTuple):
 class Way:
     """A motion so far: its largest deflections, where it went of late, and the cycles found beside it.
 
-    means, states: the mean friction from each look to the next, and where that ended.
+    means, states, fastest: the mean friction from each look to the next, where that ended, and the fastest slip.
     """
 
     returns: list[Return] = field(default_factory=list)
@@ -111,12 +112,17 @@ class Way:
     cycles: list[Cycle] = field(default_factory=list)
     means: list[float] = field(default_factory=list)
     states: list[Floats] = field(default_factory=list)
+    fastest: list[float] = field(default_factory=list)
 
-    def note(self, span: Span, turns: float) -> None:
-        """One span more; those before the last two returns, or half of the way, are left out one at a time."""
+    def note(self, span: Span, turns: float, speed: float) -> None:
+        """One span more; those before the last two returns, or half of the way, are left out one at a time.
+
+        speed: of the belt.
+        """
+        track = span.track
         self.means.append(mean_of(span))
         self.states.append(span.end)
-        track = span.track
+        self.fastest.append(fastest_slip(track, speed))
         since = self.returns[-3].turns if len(self.returns) > 2 else 0.5 * turns
         if self.reaches and self.reaches[0].turns <= since - BETWEEN_LOOKS:
             del self.reaches[0]
@@ -172,7 +178,7 @@ class Undriven:
         way = Way()
         try:
             return self._followed(way)
-        except NotFound:
+        except TooMuchWork:
             if len(way.means) < FEWEST_LOOKS:
                 raise
             self.effort.work = 0  # as much again for what the error needs
@@ -204,10 +210,10 @@ class Undriven:
             if cycle is not None:
                 return self._cycle(cycle)
             if len(way.means) in LOOKS_AVERAGED:
-                motion = self._unrepeated(way)
-                if motion is not None and motion.error <= max(self.tolerance, SMALL_ERROR):
+                motion, last = self._unrepeated(way), len(way.means) == LOOKS_AVERAGED[-1]
+                if motion is not None and (last or motion.error <= max(self.tolerance, SMALL_ERROR)):
                     return motion
-                if len(way.means) == LOOKS_AVERAGED[-1]:
+                if last:
                     raise NotFound(f"no steady state within {turns:.0f} periods: {path.whereabouts(state)}")
             state, turns = span.end, turns + BETWEEN_LOOKS
             self.effort.turns = turns
@@ -281,7 +287,7 @@ class Undriven:
 
     def _cycle_neared(self, way: Way, state: Floats, span: Span, turns: float) -> Cycle | None:
         """The cycle that the motion nears at one of the largest deflections of a span."""
-        way.note(span, turns)
+        way.note(span, turns, self._path.speed)
         if self._conserves or self.effort.closing > MOST_CLOSING:
             return None
         before = self.effort.work
@@ -317,22 +323,29 @@ class Undriven:
     def _cycle(self, cycle: Cycle) -> PeriodicMotion:
         """Raises NotFound where a motion across the belt might grow."""
         span, speed = self._path.follow(cycle.state, cycle.turns, room=PANELS_AT_FIRST), self._path.speed
-        fastest = float(np.abs(span.track.v.real[: span.track.filled[0]] - speed).max())
-        if self.scene.degrees_of_freedom == 2 and not self.law.damps_across(fastest):
-            raise NotFound(ACROSS)
+        self._check_across(fastest_slip(span.track, speed))
         kind = STICKS if span.slowest < STICKING * abs(speed) else SLIPS
         return PeriodicMotion(
             cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind
         )
 
+    def _check_across(self, fastest: float) -> None:
+        """Raises NotFound where slip of this speed may feed a motion across the belt."""
+        if self.scene.degrees_of_freedom == 2 and not self.law.damps_across(fastest):
+            raise NotFound(ACROSS)
+
     # --- motions that do not repeat ---
 
     def _unrepeated(self, way: Way) -> PeriodicMotion | None:
-        """The motion by its long mean, the first quarter left out; None where it is on its way elsewhere still."""
+        """The motion by its long mean, the first quarter left out; None where it is on its way elsewhere still.
+
+        Raises NotFound where a motion across the belt might grow.
+        """
         first = len(way.means) // 4
         means, states = np.array(way.means[first:]), np.array(way.states[first - 1 :])
         if drifts(np.linalg.norm(states - self._path.sliding, axis=1)):
             return None
+        self._check_across(max(way.fastest[first:]))
         found = long_mean([means])
         if found.quasi_periodic:  # nearer to each other than its parts are to the motion
             finer = self._means(states[0], len(means), self._accuracy / FINER)
@@ -403,6 +416,11 @@ class Undriven:
 def mean_of(span: Span) -> float:
     """The mean friction of one from a look to the next."""
     return float(interpreted(mean_friction)(span.impulse, BETWEEN_LOOKS * TURN))
+
+
+def fastest_slip(track: Track, speed: float) -> float:
+    """Of a motion, on a belt of this speed."""
+    return float(np.abs(track.v.real[: track.filled[0]] - speed).max())
 
 
 def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

@@ -59,6 +59,10 @@ class NotFound(Exception):
     """No periodic motion; the message says why."""
 
 
+class TooMuchWork(NotFound):
+    """None within ``MOST_WORK`` steps."""
+
+
 class Span(NamedTuple):
     """One span of the motion: its end, the integral of friction, the time at rest, when rest ended last (-1: it did
     not), the slowest slip, the steps (-1: it gave up), and where there is room the track."""
@@ -187,7 +191,7 @@ class UndrivenPath:
                 f"friction is too steep near rest for {MOST_STEPS:,} steps: {self.whereabouts(state)}"
             )
         if self.effort.work > MOST_WORK:
-            raise NotFound(f"no steady state within {MOST_WORK:,} steps: {self.whereabouts(state)}")
+            raise TooMuchWork(f"no steady state within {MOST_WORK:,} steps: {self.whereabouts(state)}")
         return span
 
     def whereabouts(self, state: Floats) -> str:

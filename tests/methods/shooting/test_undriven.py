@@ -18,7 +18,7 @@ from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.march.method import March
-from frictionlab.methods.shooting import undriven_path
+from frictionlab.methods.shooting import undriven, undriven_path
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.shooting.undriven_path import UndrivenPath
 from frictionlab.scene.scene import Initial, Scene, Transverse
@@ -199,6 +199,18 @@ def test_a_slow_belt_drags_a_mass_on_bristles_from_stick_to_slip(belt_speed):
     by_rk4, period = 0.306923027, 6.38523  # marched with 4,000 steps per period
     assert abs(row["mean_friction"] - by_rk4) < 1e-6
     assert row["period"] == pytest.approx(period, abs=1e-4)
+
+
+@deep("seconds of steps")
+def test_a_motion_that_may_grow_across_the_belt_has_no_long_mean(monkeypatch):
+    """Friction is taken to feed a motion across at the speed of slip, not at that of the belt."""
+    monkeypatch.setattr(undriven, "LOOKS_AVERAGED", (128,))
+    monkeypatch.setattr(LuGre, "damps_across", lambda _law, speed: speed < 0.02)
+    law = LuGre(mu_kinetic=0.3, presliding_length=2.5e-4, mu_static=0.4, stribeck_speed=2.5e-3)
+    across = Transverse(natural_frequency=1.3, damping_ratio=0.05)
+    one = Scene(damping_ratio=0.05, normal_load=1.0, belt_speed=0.0125, transverse=across)
+    answers = with_columns(Shooting(), [one], law, 1e-6)
+    assert (answers.status, answers.reason) == (["failed"], [undriven.ACROSS])
 
 
 @deep("seconds of steps")

@@ -232,6 +232,16 @@ def without_shown_unit(name: str) -> str:
     return name.partition(SHOWN_IN)[0]
 
 
+def by_plain_names(names: Iterable[str]) -> dict[str, str]:
+    """Columns as they are shown, by their names as tables of a run have them."""
+    return {without_shown_unit(name): name for name in names}
+
+
+def shown_column(names: Iterable[str], name: str) -> str:
+    """The column among these of a number of orbits, curves, harmonics or attractors: that in SI units, if there."""
+    return by_plain_names(names).get(ALSO_IN_SI[name][0], name) if name in ALSO_IN_SI else name
+
+
 def is_belt_speed(name: str) -> bool:
     """Whether a column is the belt speed, in whatever unit."""
     return without_shown_unit(name) in BELT_SPEEDS

@@ -44,6 +44,7 @@ class Written(float):
         made.text, made.si = text, si
         return made
 
+    # a float is made again of itself alone
     def __getnewargs__(self) -> tuple[float, str, str]:  # type: ignore[override]
         """Of which it is made again in another process."""
         return float(self), self.text, self.si

@@ -19,12 +19,11 @@ from matplotlib.lines import Line2D
 from frictionlab.charts.sheet import Heading, write_title
 from frictionlab.charts.style import PAGE, blank_figure
 from frictionlab.columns import (
-    ALSO_IN_SI,
     BELT_SPEEDS,
     INPUTS,
     SHOWN_IN,
+    shown_column,
     unit_shown,
-    without_shown_unit,
     word,
 )
 
@@ -61,7 +60,7 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     figure = blank_figure(PAGE, 4.6)
     write_title(figure, heading.title)
     above, below = figure.subplots(2, 1, sharex=True)
-    speed, place = (_shown(rows, name) for name in ("belt_speed", "x"))
+    speed, place = (shown_column(rows, name) for name in ("belt_speed", "x"))
     states, wild = rows[rows["point"] == 1], rows[rows["period"] == 0]
     long = states[states["period"] == 0]
     for some, color, width in ((long, WILD, 2.0), (states[states["period"] > 1], "0.85", 0.8)):
@@ -78,12 +77,6 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     below.set(xlabel=word(axis), ylabel=f"position $x_1$ at the\n{at}")
     figure.legend(handles=list(_legend(states)), loc="outside lower center", ncols=7, handlelength=1.0)
     return figure
-
-
-def _shown(rows: pd.DataFrame, name: str) -> str:
-    """The column of a number in the units in which it is shown."""
-    own = {without_shown_unit(each): each for each in rows}
-    return own.get(ALSO_IN_SI[name][0], name)
 
 
 def _look(period: int) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.sweeps import plain
-from frictionlab.columns import SI, without_shown_unit
+from frictionlab.columns import SI, by_plain_names
 from frictionlab.printable import printable
 from frictionlab.study.figure_options import FORMATS, USUAL_FIGURES, FigureOptions
 from frictionlab.units.shown import ShownUnit, in_shown_units
@@ -112,7 +112,7 @@ class FigureData:
     @cached_property
     def _shown(self) -> dict[str, str]:
         """The columns of the table by their names without the unit in which they are shown."""
-        return {without_shown_unit(name): name for name in self.table.columns}
+        return by_plain_names(self.table)
 
 
 def draw_figures(

@@ -27,8 +27,9 @@ from frictionlab.columns import (
     ALSO_IN_SI,
     BELT_SPEEDS,
     belt_speed,
+    by_plain_names,
+    shown_column,
     unit_shown,
-    without_shown_unit,
     word,
 )
 from frictionlab.study.figure_options import FigureOptions
@@ -67,8 +68,7 @@ class DrawnOrbit(NamedTuple):
 
     def shown(self, name: str) -> str:
         """The column of a sample in the units in which it is shown, those of the scene where it has others."""
-        own = {without_shown_unit(column): column for column in self.samples}
-        return own.get(ALSO_IN_SI.get(name, ("", ""))[0], name)
+        return shown_column(self.samples, name)
 
     def column(self, name: str) -> CurveNumbers:
         """A column of the samples."""
@@ -239,13 +239,12 @@ def harmonic_figures(
 
 def _amplitude(harmonics: pd.DataFrame, column: str, label: str) -> tuple[str, str]:
     """The column of an amplitude in the units in which it is shown, and its label."""
-    own = {without_shown_unit(name): name for name in harmonics}
-    shown = own.get(ALSO_IN_SI.get(column, ("", ""))[0], column)
+    shown = shown_column(harmonics, column)
     return shown, f"{label} [{unit_shown(shown)}]" if unit_shown(shown) else label
 
 
 def _family(harmonics: pd.DataFrame) -> Family | None:
-    names = {without_shown_unit(name): name for name in harmonics}
+    names = by_plain_names(harmonics)
     speeds = {names[each]: names[each].replace(each, of) for each, of in _SPEEDS.items() if each in names}
     rows = harmonics[harmonics[HARMONIC] > 0].rename(columns=speeds)
     rows = rows.assign(status="ok", **{HARMONIC: rows[HARMONIC].astype(float)})

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from frictionlab.columns import IN_SI_UNITS, RESULTS, SI, without_shown_unit
+from frictionlab.columns import IN_SI_UNITS, RESULTS, SI, by_plain_names
 from frictionlab.printable import MOST_DIGITS, with_error
 from frictionlab.report.facts import Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
@@ -98,7 +98,7 @@ def whole_grid(run: Facts) -> Grid | None:
     table = run.table
     if len(table) > FEW_ROWS:
         return None
-    shown = {without_shown_unit(name): name for name in table}
+    shown = by_plain_names(table)
     in_si = [name for name in SI if name in shown]
     names = [*RESULTS, *in_si]
     left = {*TOLD_ELSEWHERE, *map(_error_of, names), *(SI[name].column for name in in_si)}

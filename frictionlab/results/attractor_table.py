@@ -16,7 +16,7 @@ from frictionlab.columns import ALSO_IN_SI, ATTRACTORS, BELT_SPEED, OF_STATES
 from frictionlab.methods.base import STATISTICAL, FoundState
 from frictionlab.results.curve_table import curve_inputs
 from frictionlab.results.derived import beside_in_si
-from frictionlab.results.part import KeptRows
+from frictionlab.results.part import STATE_NUMBERS, KeptRows
 from frictionlab.results.table import Inputs, inputs, scales_of_row
 from frictionlab.study import StudyCurve
 
@@ -77,13 +77,8 @@ def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, 
     return {
         "belt_speed": speed,
         "state": number,
-        "period": state.period,
-        "mean_friction": state.mean,
-        "error": state.error,
         "error_kind": _error_kind(state.error, state.period),
-        "share": state.share,
-        "mean_low": state.low,
-        "mean_high": state.high,
+        **{name: getattr(state, field) for name, field in STATE_NUMBERS.items()},
         "point": point + 1,
         "x": float(state.x[point]),
         "velocity": float(state.velocity[point]),

@@ -17,11 +17,18 @@ KeptRows = dict[int, dict[str, Floats]]
 """By row of the table, columns of equal length."""
 
 
+STATE_NUMBERS = {
+    **{"period": "period", "mean_friction": "mean", "error": "error", "share": "share"},
+    **{"mean_low": "low", "mean_high": "high"},
+}
+"""The columns of numbers of a state, and the fields they are from."""
+
+
 def columns_of_states(found: Sequence[FoundState]) -> dict[str, Floats]:
     """States of one row as columns of numbers."""
-    names = {"period": "period", "mean_friction": "mean", "error": "error", "share": "share"}
-    names |= {"mean_low": "low", "mean_high": "high"}
-    return {name: np.array([getattr(one, field) for one in found], float) for name, field in names.items()}
+    return {
+        name: np.array([getattr(one, field) for one in found], float) for name, field in STATE_NUMBERS.items()
+    }
 
 
 class Piece(NamedTuple):

@@ -65,11 +65,6 @@ class Cut(NamedTuple):
     places: Places
     rows: Places
 
-    @property
-    def kind(self) -> tuple[str, str]:
-        """The labels of its law and its method: points of one kind take about as long as each other."""
-        return self.curve.law_label, self.curve.method.label
-
     def chunk(self, task: Task) -> Chunk:
         """The chunk; the law and the method are made here."""
         curve = self.curve

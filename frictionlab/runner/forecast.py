@@ -93,7 +93,7 @@ class Forecast:
         def learn() -> None:
             with suppress(BrokenPlugin):  # the run itself tells of it
                 while (unknown := self._not_begun()) and not self.is_over:
-                    chosen = [each for each in curves if (each.law_label, each.method.label) in unknown]
+                    chosen = [each for each in curves if each.labels in unknown]
                     for kind, price in prices(chosen, task, most=MOST_LEARNING).items():
                         self.learn(kind, price.measured, price.spent)
                     time.sleep(LEARNS_AFTER)  # kernels may have been compiled by then

@@ -64,5 +64,10 @@ def open_chunks(
             chunk = cut.chunk(task)
             key = None if keys is None else keys.of(chunk, cut.curve.kind, cut.curve.method.name)
             yield OpenChunk(
-                chunk if len(left) == len(places) else chunk.of(left), number, cut.kind, cut.rows, left, key
+                chunk if len(left) == len(places) else chunk.of(left),
+                number,
+                cut.curve.labels,
+                cut.rows,
+                left,
+                key,
             )

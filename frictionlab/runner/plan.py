@@ -43,7 +43,7 @@ def plan(study: Study) -> list[Planned]:
     """One entry per law and method, in the order of the study. Raises BrokenPlugin."""
     groups: dict[tuple[str, str], list[StudyCurve]] = {}
     for curve in study.foreseen().curves():
-        groups.setdefault((curve.law_label, curve.method.label), []).append(curve)
+        groups.setdefault(curve.labels, []).append(curve)
     return [_planned(group, study) for group in groups.values()]
 
 

@@ -70,7 +70,7 @@ def prices(
     """
     kinds: dict[tuple[str, str], list[Cut]] = {}
     for each in cuts(curves, chunk_size(curves)):
-        kinds.setdefault(each.kind, []).append(each)
+        kinds.setdefault(each.curve.labels, []).append(each)
     found = {kind: _Sample(of_it, task) for kind, of_it in kinds.items()}
     samples = list(found.values())
     points = sum(each.points for each in samples)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Iterator, Sequence, Sized
+from collections.abc import Collection, Sequence, Sized
 from dataclasses import replace
 
 import numpy as np
@@ -197,19 +197,12 @@ def _noted(reasons: list[str], notes: list[str]) -> list[str]:
     return ["; ".join(filter(None, both)) for both in zip(reasons, notes, strict=True)]
 
 
-def _open_rows(chunk: Chunk, piece: Piece) -> Iterator[tuple[int, int]]:
-    """The points that have no one state, by their place in the piece, and their rows."""
-    for at, place in enumerate(piece.places):
-        if piece.answers.status[at] == "not_unique":
-            yield at, int(chunk.rows[place])
-
-
 def _kept(chunk: Chunk, piece: Piece) -> dict[str, KeptRows]:
     """What stands beside the table: the states of points that have several, and the orbits that a study keeps."""
     task, answers, kept = chunk.task, piece.answers, dict[str, KeptRows]()
-    states = {row: answers.states(at) for at, row in _open_rows(chunk, piece)}
-    if any(states.values()):
-        kept["states"] = {row: columns_of_states(found) for row, found in states.items() if found}
+    for at, place in enumerate(piece.places):
+        if answers.status[at] == "not_unique" and (states := answers.states(at)):
+            kept.setdefault("states", {})[int(chunk.rows[place])] = columns_of_states(states)
     if not (task.samples or task.harmonics):
         return kept
     from frictionlab.orbit.harmonics import harmonic_columns  # these import numba: only where it is needed

@@ -86,12 +86,11 @@ class Solving:
         Raises BrokenPlugin; BrokenExecutor, KeyboardInterrupt with what was solved by then taken.
         """
         number, shares = share
-        own = [
-            (cut.kind, len(cut.rows))
-            for at, cut in enumerate(cuts(self.curves, chunk_size(self.curves)))
-            if at % shares == number - 1
-        ]
-        self.points = sum(points for _, points in own)
+        own = [(curve.labels, len(curve.rows)) for curve in self.curves]
+        if shares > 1:
+            every = enumerate(cuts(self.curves, chunk_size(self.curves)))
+            own = [(cut.curve.labels, len(cut.rows)) for at, cut in every if at % shares == number - 1]
+            self.points = sum(points for _, points in own)
         known = sum(len(part.rows) for part in self.known)
 
         self._forecast = forecast = Forecast(own)

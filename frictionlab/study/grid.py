@@ -72,6 +72,11 @@ class StudyCurve:
     rows: range
 
     @property
+    def labels(self) -> tuple[str, str]:
+        """Of the law and the method: points of equal ones take about as long as each other."""
+        return self.law_label, self.method.label
+
+    @property
     def law(self) -> FrictionLaw:
         """The law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
         return law_in_scene(self.given_law, self.scenes.scene)
@@ -288,10 +293,11 @@ def law_in_scene(law: FrictionLaw, scene: Scene) -> FrictionLaw:
 def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None) -> FrictionLaw:
     """A law converted to these scales and to unit normal load."""
     assert normal_load is not None  # every valid scene has one
-    if scales is None:
+    if scales is not None:
+        law = scaled_law(law, scales)
+    else:
         _refuse_units(law)
-    scaled = law if scales is None else scaled_law(law, scales)
-    return scaled.under_load(normal_load)
+    return law.under_load(normal_load)
 
 
 def _refuse_units(law: FrictionLaw) -> None:

@@ -162,9 +162,11 @@ class MarchedPoint:
         return scene.belt_speed == 0.0 and elastic
 
     def _leave_range(self, arrivals: Sequence[Arrival]) -> None:
-        ranges = [(one.low, one.high) if math.isnan(one.mean) else (one.mean, one.mean) for one in arrivals]
-        window = max(one.followed if one.average else 1 for one in arrivals)
-        self._range(min(low for low, _ in ranges), max(high for _, high in ranges), window)
+        means, window = (
+            [one.mean for one in arrivals],
+            max(one.followed if one.average else 1 for one in arrivals),
+        )
+        self._range(min(means), max(means), window)
         falls = self.law.memory_kind == "none" or friction_falls(self.law)
         why = "friction falls with speed: " if self._may_depend_on_start() and falls else ""
         if not why and arrivals[0].period == 0:

@@ -43,6 +43,12 @@ def solve(one, law, tolerance=1e-8):
     return answers, {name: float(column[0]) for name, column in answers.columns.items()}
 
 
+def followed(one, law):
+    """The motion from free shaking, period by period, until nothing is left of that."""
+    problem = PeriodicProblem(one, law, 1e-6)
+    return problem.followed_on(one.belt_speed, problem.state_at(one.belt_speed, None), 600, 1e-9)
+
+
 class Line:
     """x'' + c x' + x + N T = F sin(Omega t) under a falling law, by scipy between events; for tests alone."""
 
@@ -206,9 +212,7 @@ def test_the_period_counts_those_in_which_the_belt_carries_the_mass_at_rest():
     )
     law = Coulomb(mu=0.6898387369384938, mu_static=1.1072202755450422)
     answers, row = solve(one, law, 1e-6)
-    problem = PeriodicProblem(one, law, 1e-6)
-    start = problem.state_at(one.belt_speed, None)
-    motion = problem.followed_on(one.belt_speed, start, 600, 1e-9)
+    motion = followed(one, law)
     last = motion.states[-64:]
     lags = [lag for lag in range(1, 32) if np.abs(last[lag:] - last[:-lag]).max() < 1e-6]
     assert lags == [21]
@@ -228,8 +232,7 @@ def test_where_a_start_nears_an_orbit_but_does_not_close_it_its_mean_is_that_of_
     assert (answers.status, answers.error_kind, answers.unique) == (["ok"], ["estimated"], ["no"])
     assert "states that differ have this mean: an orbit of 2 drive periods" in answers.reason[0]
     assert row["period"] == 2.0
-    problem = PeriodicProblem(one, law, 1e-6)
-    motion = problem.followed_on(one.belt_speed, problem.state_at(one.belt_speed, None), 600, 1e-9)
+    motion = followed(one, law)
     assert abs(row["mean_friction"] - motion.means[-2:].mean()) <= row["error"] + 1e-8
 
 

@@ -122,7 +122,7 @@ class Way:
         track = span.track
         self.means.append(mean_of(span))
         self.states.append(span.end)
-        self.fastest.append(fastest_slip(track, speed))
+        self.fastest.append(most_slip(track, speed))
         since = self.returns[-3].turns if len(self.returns) > 2 else 0.5 * turns
         if self.reaches and self.reaches[0].turns <= since - BETWEEN_LOOKS:
             del self.reaches[0]
@@ -323,7 +323,7 @@ class Undriven:
     def _cycle(self, cycle: Cycle) -> PeriodicMotion:
         """Raises NotFound where a motion across the belt might grow."""
         span, speed = self._path.follow(cycle.state, cycle.turns, room=PANELS_AT_FIRST), self._path.speed
-        self._check_across(fastest_slip(span.track, speed))
+        self._check_across(most_slip(span.track, speed))
         kind = STICKS if span.slowest < STICKING * abs(speed) else SLIPS
         return PeriodicMotion(
             cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind
@@ -418,7 +418,7 @@ def mean_of(span: Span) -> float:
     return float(interpreted(mean_friction)(span.impulse, BETWEEN_LOOKS * TURN))
 
 
-def fastest_slip(track: Track, speed: float) -> float:
+def most_slip(track: Track, speed: float) -> float:
     """Of a motion, on a belt of this speed."""
     return float(np.abs(track.v.real[: track.filled[0]] - speed).max())
 

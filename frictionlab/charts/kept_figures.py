@@ -60,7 +60,7 @@ FREQUENCIES = tuple(
 
 
 class DrawnOrbit(NamedTuple):
-    """One orbit: its curve, its row of the table, and its samples, the first of them again at the end."""
+    """One orbit: its curve, its row of the table, and its samples, the first again at the end where it repeats."""
 
     curve: CurveData
     row: pd.Series
@@ -106,11 +106,11 @@ def orbit_figures(
     found = orbits([int(row.name) for _, rows in chosen for _, row in rows])
     if found is None or found.empty:
         return {}
-    samples = {row: _closed(rows) for row, rows in in_shown_units(found, units).groupby("row")}
+    samples = {row: rows.sort_values("tau") for row, rows in in_shown_units(found, units).groupby("row")}
     points = []
     for settings, rows in chosen:
         loops = {
-            (curve.law, curve.member): DrawnOrbit(curve, row, samples[row.name])
+            (curve.law, curve.member): DrawnOrbit(curve, row, _closed(samples[row.name], row))
             for curve, row in reversed(rows)  # of several methods the first has the last word
             if row.name in samples
         }
@@ -191,9 +191,10 @@ def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple
             yield (*panel, SweptValue(family.abscissa, value)), rows
 
 
-def _closed(samples: pd.DataFrame) -> pd.DataFrame:
-    """The samples in time, and the first again after the last."""
-    inside = samples.sort_values("tau")
+def _closed(inside: pd.DataFrame, row: pd.Series) -> pd.DataFrame:
+    """The samples in time, and the first again after the last, but for a motion that does not repeat."""
+    if row.get("error_kind") == "statistical":
+        return inside
     step = inside["tau"].iloc[1] - inside["tau"].iloc[0] if len(inside) > 1 else 0.0
     again = inside.iloc[:1].assign(tau=inside["tau"].iloc[-1] + step)
     return pd.concat([inside, again], ignore_index=True)

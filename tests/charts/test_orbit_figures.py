@@ -51,6 +51,15 @@ def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
     assert legend_of(figure) == ["coulomb", "dahl", "3 of 12 points"]
 
 
+def test_a_motion_that_does_not_repeat_is_not_closed() -> None:
+    wild = TABLE.assign(error_kind=np.where(TABLE["scene.belt_speed"] == 4.0, "statistical", "estimated"))
+    lines = [axes.lines[0] for axes in of_orbits("hysteresis", wild).axes]
+
+    ends_meet = [line.get_xdata()[0] == line.get_xdata()[-1] for line in lines]
+    assert ends_meet == [True, False, True]
+    assert [len(line.get_xdata()) for line in lines] == [SAMPLES + 1, SAMPLES, SAMPLES + 1]
+
+
 def test_a_point_at_which_the_body_sticks_is_among_them() -> None:
     sticks = TABLE.assign(stick_fraction=np.where(TABLE["scene.belt_speed"] == 7.0, 0.1, 0.0))
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def check_command(
     study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], plugins: Plugins, as_json: bool
 ) -> None:
-    """Check STUDY and tell what it will take: models, refusals, time. No answer is kept, nothing is compiled.
+    """Check STUDY and tell what it will take: models, refusals, time. No answer is kept, no kernel is compiled.
 
     The time follows from that of some points, which are solved for a few seconds. The plugins that STUDY lists are
     Python code, which is run to check it, unless --no-plugins is given.

@@ -79,10 +79,11 @@ def prices(
         best, error = max(samples, key=_unsure), math.hypot(*map(_unsure, samples))
         enough = FEWEST if error < UNSURE * known else min(max(USUAL, SHARE * known), most)
         few = error == math.inf or sum(each.measured for each in samples) < FEWEST_POINTS
-        if best.unsure == 0.0 or spent > (most if few else enough):
+        left = (most if few else enough) - spent
+        if best.unsure == 0.0 or left < 0.0:
             break
         best.solve_more(most)
-        tell(sum(each.measured for each in samples), points, math.nan)
+        tell(sum(each.measured for each in samples), points, left)
     solved = [each for each in samples if each.measured]
     usual = sum(each.seconds for each in solved) / max(1, sum(each.points for each in solved))
     return {kind: each.price(usual) for kind, each in found.items()}

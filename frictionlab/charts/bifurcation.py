@@ -36,7 +36,7 @@ PERIOD_MARKERS: dict[int, tuple[str, str]] = {
     6: ("P", "#be185d"),
 }
 LONGER = ("x", "#525252")
-WILD = "0.72"
+WILD = "0.57"
 DOTS: Any = {"marker": "o", "markersize": 0.9, "mew": 0.0, "ls": "none", "color": "0.55", "rasterized": True}
 
 
@@ -63,7 +63,7 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     speed, place = (shown_column(rows, name) for name in ("belt_speed", "x"))
     states, wild = rows[rows["point"] == 1], rows[rows["period"] == 0]
     long = states[states["period"] == 0]
-    for some, color, width in ((long, WILD, 2.0), (states[states["period"] > 1], "0.85", 0.8)):
+    for some, color, width in ((long, WILD, 2.0), (states[states["period"] > 1], WILD, 0.5)):
         ends = some["mean_low"], some["mean_high"]
         above.vlines(some[speed], *ends, colors=color, linewidth=width, zorder=1)
     above.plot(long[speed], long["mean_friction"], marker="_", color="0.25", linestyle="none", markersize=4)

@@ -18,6 +18,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from frictionlab.charts.contrast import with_contrast
 from frictionlab.charts.curves import CurveData
 from frictionlab.charts.style import CYCLE
 from frictionlab.charts.sweeps import BESIDE, LONGEST_LABEL, shortened, some_of
@@ -26,6 +27,7 @@ MARKERS = "os^Dvph<>d"
 MOST_VALUES_IN_LEGEND = 8
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
 LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
+DARKEST, PALEST = 14.0, 3.2  # contrast against white of the ends of a swept number
 BROADEST = 0.9  # what the first of several methods is broader than the last, however many [point]
 
 
@@ -58,14 +60,10 @@ class Looks:
 
     def color(self, curve: CurveData) -> tuple[float, float, float]:
         """The colour of what sets it, from dark to light along a swept number."""
-        red, green, blue = to_rgb(self._cycle(curve)["color"])
-        members = self.sizes[1]
+        members, color = self.sizes[1], self._cycle(curve)["color"]
         if members == 1 or self._words:
-            return red, green, blue
-        share = curve.place[1] / (members - 1)  # first half as dark as black allows, then towards white
-        toward, part = (0.0, 0.5 - share) if share < 0.5 else (1.0, 1.3 * (share - 0.5))
-        red, green, blue = (level + part * (toward - level) for level in (red, green, blue))
-        return red, green, blue
+            return to_rgb(color)
+        return with_contrast(color, DARKEST * (PALEST / DARKEST) ** (curve.place[1] / (members - 1)))
 
     def _cycle(self, curve: CurveData) -> dict[str, Any]:
         law, member, method = curve.place

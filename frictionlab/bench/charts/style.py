@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib.axes import Axes
 
 OURS = ("#08306b", "#7f0000", "#00441b", "#4a1486", "#662506", "#252525")
-THEIRS = ("#e6550d", "#31a354", "#756bb1", "#969696")
+THEIRS = ("#e6550d", "#31a354", "#756bb1", "#858585")
 LINE_STYLES = ("solid", (0, (5, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
 
 

@@ -320,6 +320,7 @@ CURVES: dict[str, str] = {
     "shape_by_initial": "verdict by the curvature at rest: concave, convex or undecided",
     "reduction": "largest fall of mean friction below that of steady sliding",
     "reduction_error": "bound on its error",
+    "model_error": "of a reduced model, whose other measures are those of its own curve: largest error of its means",
     "reason": "why a measure is empty",
 }
 """The columns of the table of curves after the inputs."""

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+import numpy as np
 import pandas as pd
 from markupsafe import Markup, escape
 
 from frictionlab.charts.sweeps import sweep_of
 from frictionlab.printable import with_error
 from frictionlab.report.facts import Facts
-from frictionlab.report.findings import with_remark
+from frictionlab.report.findings import place_of, with_remark
 from frictionlab.report.shapes import shape_sentence
-from frictionlab.report.tables import listed, named, settings
-from frictionlab.results.pairs import best_rows
+from frictionlab.report.tables import listed, named, settings, size
+from frictionlab.results.pairs import Difference, best_rows
 from frictionlab.results.ranking import NOBODY, Ranking, ranking_of
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
 
 MOST_STRETCHES = 4
 """Stretches of the axis that are told one by one; of more, how many points each has."""
-ALL_WELL = Markup(
-    '<span class="good">Nothing needs attention:</span> {} ok, with no error above the tolerance of {:g}{}.'
-)
+IN_SHORT = 3
+"""Digits of a distance that is told in a sentence."""
+ALL_WELL = Markup('<span class="good">Nothing needs attention:</span> {} ok{}{}.')
 
 
 def sentences(run: Facts) -> list[Markup]:
@@ -38,13 +39,57 @@ def height_sentence(run: Facts) -> Markup:
         one = "one mean friction" if (table["status"] == "not_unique").any() else "a number"
         return Markup("No point has {}.").format(one)
     along = sweep_of(table).along or run.speed
+    if told := _models(run):
+        return Markup("; ").join(told) + _without(table, best)
     ranking = ranking_of(table, along)
-    told = _span(best, along, run.speed) if ranking is None else _Ranked(ranking, along).sentence()
+    first = _span(best, along, run.speed) if ranking is None else _Ranked(ranking, along).sentence()
     if table["law"].nunique() == 1:
-        told += _methods(run)
-    if silent := [law for law in table["law"].unique() if law not in set(best["law"])]:
-        told += Markup("; {} {} no number").format(listed(silent), "has" if len(silent) == 1 else "have")
-    return told + "."
+        first += _methods(run)
+    return first + _alone(run) + _without(table, best)
+
+
+def _without(table: pd.DataFrame, best: pd.DataFrame) -> Markup:
+    """Which laws have no number anywhere, and the end of the sentence."""
+    silent = [law for law in table["law"].unique() if law not in set(best["law"])]
+    has = "has" if len(silent) == 1 else "have"
+    return Markup("; {} {} no number.").format(listed(silent), has) if silent else Markup(".")
+
+
+def _models(run: Facts) -> list[Markup]:
+    """Of each reduced model how far it is from the full answers that stand beside it: at most, and where."""
+    found: dict[tuple[str, str], list[Difference]] = {}
+    for pair in run.method_pairs:
+        if pair.one in run.reduced and pair.other not in run.reduced:
+            found.setdefault((pair.law, pair.one), []).append(pair)
+    if len(found) == 1:
+        ((law, method), pairs), several = next(iter(found.items())), run.table["law"].nunique() > 1
+        if len(pairs) <= MOST_STRETCHES:
+            return [_off(f"{method} of {law}" if several else method, pairs)]
+    widest = [(who, max(pairs, key=lambda each: abs(each.value))) for who, pairs in found.items()]
+    widest.sort(key=lambda each: -abs(each[1].value))
+    return [_off(f"{method} of {law}", [pair]) for (law, method), pair in widest[:MOST_STRETCHES]]
+
+
+def _off(who: str, pairs: Sequence[Difference]) -> Markup:
+    """How far a model is off, setting by setting."""
+    if not any(pair.apart for pair in pairs):
+        return Markup("{} agrees with {} within errors").format(who, pairs[0].other)
+    told = []
+    for pair in pairs:
+        side = "low" if pair.value < 0 else "high"
+        far = with_error(abs(pair.value), pair.error, IN_SHORT)
+        told.append(Markup("up to {} too {}, at {}").format(far, side, settings(pair.where)))
+    return Markup("{} is {}").format(who, Markup("; ").join(told))
+
+
+def _alone(run: Facts) -> Markup:
+    """How far reduced models are off where no full answers stand beside them: by their own errors."""
+    rows = run.table[run.table["method"].isin(run.reduced) & run.table["error"].notna()]
+    if rows.empty:
+        return Markup("")
+    worst = rows.loc[rows["error"].idxmax()]
+    told = Markup("; {} is off by at most {}, at {}")
+    return told.format(listed(list(rows["method"].unique())), size(worst["error"]), place_of(run, worst))
 
 
 def _methods(run: Facts) -> Markup:
@@ -74,10 +119,14 @@ class _Ranked(NamedTuple):
             names = listed([self.name(who) for who in range(len(ranked))])
             return Markup("{} is the same within errors for {}{}").format(what, names, self.everywhere)
         gaps = " (of those with a number)" if self.ranking.has_gaps else ""
+        if self.winners is None:
+            return Markup("No {} is highest everywhere{}: {}").format(
+                "curve" if self.one_law else "law", gaps, self.spread()
+            )
         told = Markup("{} is highest for {}{}{} {}")
         if len(first) == 1:
             return told.format(what, self.name(first[0]), gaps, ":", self.excess())
-        return told.format(what, self.winners(), gaps, ";", self.excess())
+        return told.format(what, self.winners, gaps, ";", self.excess())
 
     @property
     def one_law(self) -> bool:
@@ -101,24 +150,40 @@ class _Ranked(NamedTuple):
     def everywhere(self) -> str:
         return f" at all {self.points}" if len(self.ranking.first) > 1 else ""
 
-    def winners(self) -> Markup:
-        """Each with where it is highest: stretches of the axis where these are few, else at how many points."""
+    @property
+    def winners(self) -> Markup | None:
+        """Each with the stretch of the axis where it is highest; None where these are many."""
         first = self.ranking.first
         winners = [who for who in dict.fromkeys(first.tolist()) if who != NOBODY]
-        tied = int((first == NOBODY).sum())
-        if len(winners) == 1 and not tied:
+        if len(winners) == 1 and NOBODY not in first:
             return self.name(winners[0]) + self.everywhere
-        if self.on_the_axis and len(self.ranking.stretches) <= MOST_STRETCHES:
-            stretches = [(who, self.where(*ends)) for who, *ends in self.ranking.stretches]
-            told = [Markup("{} {}").format(self.name(who), at) for who, at in stretches if who != NOBODY]
-            ties = [at for who, at in stretches if who == NOBODY]
-        else:
-            counts = sorted(((int((first == who).sum()), -who) for who in winners), reverse=True)
-            told = [Markup("{} at {}").format(self.name(-who), count) for count, who in counts]
-            told[0] += f" of {self.points}"
-            ties = [Markup("at {}").format(tied)] if tied else []
+        if not self.on_the_axis or len(self.ranking.stretches) > MOST_STRETCHES:
+            return None
+        stretches = [(who, self.where(*ends)) for who, *ends in self.ranking.stretches]
+        told = [Markup("{} {}").format(self.name(who), at) for who, at in stretches if who != NOBODY]
+        ties = [at for who, at in stretches if who == NOBODY]
         alike = [Markup("{} the highest are the same within errors").format(listed(ties))] if ties else []
         return Markup("; ").join([listed(told), *alike])
+
+    def spread(self) -> Markup:
+        """How far the highest is above the lowest at most, for each setting where these are few."""
+        points = self.ranking.points
+        others = [name for name in points if name != self.along]
+        groups = (
+            list(points.reset_index(drop=True).groupby(others, sort=False).indices.values()) if others else []
+        )
+        if not 1 <= len(groups) <= MOST_STRETCHES:
+            groups = [np.arange(len(points))]
+        told = []
+        for places in groups:
+            at, high, low = self.ranking.widest(places)
+            mean, error = self.ranking.mean[at], self.ranking.error[at]
+            apart = with_error(float(mean[high] - mean[low]), float(error[high] + error[low]), IN_SHORT)
+            where = settings(points.iloc[at].to_dict())
+            told.append(
+                Markup("{} is up to {} above {}, at {}").format(self.name(high), apart, self.name(low), where)
+            )
+        return Markup("; ").join(told)
 
     def where(self, start: int, stop: int) -> Markup:
         """A stretch of the axis."""
@@ -135,7 +200,7 @@ class _Ranked(NamedTuple):
         """How far the highest is above the next, at most, and where."""
         ranking, at = self.ranking, self.ranking.largest_excess
         who, other = int(ranking.first[at]), int(ranking.second[at])
-        excess = with_error(float(ranking.excess[at]), float(ranking.excess_error[at]))
+        excess = with_error(float(ranking.excess[at]), float(ranking.excess_error[at]), IN_SHORT)
         if len(ranking.first) == 1:
             value = with_error(float(ranking.mean[at, who]), float(ranking.error[at, who]))
             return Markup("{}, which is {} above {}, the next").format(value, excess, self.name(other))
@@ -187,7 +252,11 @@ def attention_sentence(run: Facts) -> Markup:
     every = {0: "", 1: ", and its expectation holds", 2: ", and both expectations hold"}
     points = "the point is" if saved.size == 1 else f"all {saved.size} points are"
     expected = every.get(held, f", and all {held} expectations hold")
-    return ALL_WELL.format(points, saved.study.tolerance, expected)
+    of_models = run.table["method"].isin(run.reduced)
+    errors = run.table.loc[~of_models, "error"]
+    exact = "" if errors.isna().all() else f", with errors of at most {errors.max():.1e}"
+    besides = " but for what the models leave out" if exact and of_models.any() else ""
+    return ALL_WELL.format(points, exact + besides, expected)
 
 
 def _unanswered(run: Facts) -> Iterator[Markup]:
@@ -211,12 +280,12 @@ def _unanswered(run: Facts) -> Iterator[Markup]:
 def _rough_or_remarked(run: Facts) -> Iterator[Markup]:
     """Errors above the tolerance, and points that are ok with something else to note."""
     table, tolerance = run.table, run.saved.study.tolerance
-    above = table["error"] > tolerance
+    above = (table["error"] > tolerance) & ~table["method"].isin(run.reduced)
     if len(rows := table[above]):
         at = f"{counted(len(rows), 'point')}, up to {rows['error'].max():.2g}"
         told = Markup('<a href="#curves">the error exceeds the tolerance of {:g}</a> at {}{}')
         yield told.format(tolerance, at, _who(rows, table))
-    if len(rows := table[with_remark(table) & ~above]):
+    if len(rows := table[with_remark(run) & ~above]):
         carry = f"{counted(len(rows), 'point')} {'carries' if len(rows) == 1 else 'carry'}"
         yield Markup('<a href="#odd">{} a remark</a>{}').format(carry, _who(rows, table))
 

@@ -69,9 +69,14 @@ class Facts:
         return self.drawn or FigureData(self.saved.table, options=study.figures, units=study.units)
 
     @cached_property
+    def reduced(self) -> frozenset[str]:
+        """The labels of its methods that solve a simpler model."""
+        return frozenset(each.label for each in self.saved.study.methods if each.is_reduced)
+
+    @cached_property
     def method_pairs(self) -> list[Difference]:
-        """Every two methods, law by law."""
-        return method_pairs(self.table)
+        """Every two methods, law by law; reduced models first."""
+        return method_pairs(self.table, self.reduced)
 
     @cached_property
     def cited(self) -> list[Cited]:

@@ -175,14 +175,15 @@ def verdicts_grid(verdicts: Sequence[Verdict]) -> Grid:
     return grid("What the study expects of its table", ["verdict", "expectation: what was found"], rows)
 
 
-def with_remark(table: pd.DataFrame) -> pd.Series:
-    """Which rows are ok with something to note; that starts were tested is told in a table of its own."""
-    return (table["status"] == "ok") & ~table["reason"].fillna(SAYS_TESTED).str.startswith(SAYS_TESTED)
+def with_remark(run: Facts) -> pd.Series:
+    """Which rows are ok with something to note; no model's own error, nor that starts were tested."""
+    full, told = ~run.table["method"].isin(run.reduced), run.table["reason"].fillna(SAYS_TESTED)
+    return (run.table["status"] == "ok") & full & ~told.str.startswith(SAYS_TESTED)
 
 
 def trouble_grid(run: Facts) -> Grid:
     """Every point that is not plainly ok, those of like reasons together, with examples."""
-    odd = run.table[(run.table["status"] != "ok") | with_remark(run.table)]
+    odd = run.table[(run.table["status"] != "ok") | with_remark(run)]
     groups = odd.groupby([odd["status"], odd["reason"].map(pattern)], sort=False)
     ordered = sorted(groups, key=lambda group: (group[0][0] == "ok", -len(group[1])))
     rows = [_trouble(run, str(status), rows) for (status, _), rows in ordered]

@@ -29,8 +29,6 @@ from frictionlab.study.yaml_text import yaml_text
 
 REPORT_TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"
-MOST_SHOWN_AT_ONCE = 12
-"""Expectations that are shown unasked where all of them hold."""
 LARGEST_THUMBNAIL = 200_000
 """Length of a picture's data above which the index goes without it: the report has it."""
 GO_ON = "frictionlab run study.yaml -o .       # go on where it was interrupted"
@@ -54,7 +52,26 @@ def report(saved: Saved, drawn: FigureData | None = None) -> str:
     """The page of a run."""
     run = Facts(saved, drawn)
     parts = _head(run) | _asked(saved) | _found(run) | _last(run)
-    return rendered("report.html", title=saved.title, **parts)
+    return rendered("report.html", title=saved.title, headings=_headings(parts), **parts)
+
+
+def _headings(parts: dict[str, Any]) -> dict[str, str]:
+    """The sections of a page and their headings, those left out of which there is nothing to show."""
+    curved = bool(parts["shape"] and parts["shape"].rows)
+    sections = {
+        "shape": ("Which way the curves bend", curved),
+        "curves": (f"The {'curves' if curved else 'numbers'}, and how exact they are", True),
+        "pairs": ("Compared in pairs", any(each.rows for each in parts["pairs"])),
+        "onsets": ("Where stick begins and ends", parts["onsets"] and parts["onsets"].rows),
+        "figures": ("More figures", parts["pictures"]),
+        "odd": ("Points to look at", parts["odd"].rows),
+        "expected": ("What was expected", parts["expected"]),
+        "asked": ("The problem", True),
+        "methods": ("How the numbers were found", True),
+        "sources": ("Sources", True),
+        "again": ("How to run it again", True),
+    }
+    return {name: heading for name, (heading, shown) in sections.items() if shown}
 
 
 def rendered(template: str, **values: Any) -> str:
@@ -127,7 +144,7 @@ def _found(run: Facts) -> dict[str, Any]:
         "onsets": None if onsets is None else findings.onset_grid(run, onsets),
         "verdicts": findings.verdicts_grid(verdicts),
         "passed": passed,
-        "fold": MOST_SHOWN_AT_ONCE < len(verdicts) == passed,
+        "fold": 0 < len(verdicts) == passed,
         "expected": len(run.saved.study.expect),
         "odd": findings.trouble_grid(run),
         "unique": findings.uniqueness_grid(run),

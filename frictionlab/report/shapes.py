@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import pandas as pd
@@ -10,12 +11,13 @@ from markupsafe import Markup
 from frictionlab.printable import with_error
 from frictionlab.report.facts import CurveRows, Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Cell, Grid, grid, listed, named
+from frictionlab.report.tables import Cell, Grid, grid, listed, named, setting, size
 from frictionlab.results.summary import alike, pattern
 from frictionlab.results.words import counted
 
 MOST_CURVES_NAMED = 6
-"""Curves that are named one by one; more are told by law where those of a law are alike, else counted."""
+"""Curves that are named one by one; more are told by what parts their shapes best, else counted."""
+MOST_GROUPS = 4
 MEANING = {
     "concave": ("above its chord", "above their chords"),
     "convex": ("below its chord", "below their chords"),
@@ -23,6 +25,8 @@ MEANING = {
     "undecided": ("its errors leave it open", "their errors leave it open"),
 }
 """Of each verdict what it says of one curve, and of several."""
+WRONG = [{"concave", "convex"}, {"concave", "mixed"}, {"convex", "mixed"}]
+"""Verdicts on the same curve that speak against each other."""
 MEASURES = {
     "shape": "shape",
     "shape_area": "area between curve and chord",
@@ -31,7 +35,7 @@ MEASURES = {
     "shape_half": "share at half the range",
     "shape_initial": "curvature at rest",
     "shape_by_initial": "shape at rest",
-    "reason": "why a measure is missing",
+    "model_error": "distance to the full curve",
 }
 """Columns of ``curves.csv`` that are shown, and their heads."""
 
@@ -46,7 +50,7 @@ def shape_sentence(run: Facts) -> Markup:
         return Markup("No shape is read: {}.").format(_why_not(curves))
     told = _one(run, found[0]) if len(found) == 1 else _several(found)
     rest = f"; of {counted(without, 'curve')} none is read ({_why_not(curves)})" if without else ""
-    return Markup("{}{}.").format(told, rest)
+    return Markup("{}{}{}.").format(told, _otherwise(run, curves, found), rest)
 
 
 def _why_not(curves: pd.DataFrame) -> str:
@@ -59,13 +63,29 @@ def _why_not(curves: pd.DataFrame) -> str:
 
 
 def _verdicts(run: Facts, curves: pd.DataFrame) -> list[CurveRows]:
-    """One for each law and set of swept values: that of the first method whose verdict is decided."""
+    """One for each law and set of swept values: of the first method that decides it, full ones first."""
     found: dict[str, CurveRows] = {}
-    for curve in run.curves_of(curves[curves["shape"].notna()]):
+    read = run.curves_of(curves[curves["shape"].notna()])
+    for curve in sorted(read, key=lambda curve: curve.method in run.reduced):
         who = f"{curve.law}, {curve.name}"
-        if who not in found or _shape(found[who]) == "undecided":
+        if who not in found or (_shape(found[who]) == "undecided" and curve.method not in run.reduced):
             found[who] = curve
     return list(found.values())
+
+
+def _otherwise(run: Facts, curves: pd.DataFrame, found: Sequence[CurveRows]) -> Markup:
+    """Which reduced models have curves of another shape than the full ones."""
+    full = {f"{curve.law}, {curve.name}": _shape(curve) for curve in found}
+    own = [each for each in run.curves_of(curves[curves["shape"].notna()]) if each.method in run.reduced]
+    told = Markup("")
+    for method in dict.fromkeys(each.method for each in own):
+        of_it = [each for each in own if each.method == method]
+        others = [each for each in of_it if {_shape(each), full[f"{each.law}, {each.name}"]} in WRONG]
+        if others:
+            which = "that" if len(of_it) == 1 else f"{len(others)} of {len(of_it)}"
+            shapes = listed([*dict.fromkeys(_shape(each) for each in others)])
+            told += Markup("; by {} {} {} {} instead").format(method, which, _be(others), shapes)
+    return told
 
 
 def _shape(curve: CurveRows) -> str:
@@ -93,13 +113,36 @@ def _several(found: Sequence[CurveRows]) -> Markup:
     if len(found) <= MOST_CURVES_NAMED:
         named_ones = [_named(own, shape, found, not at) for at, (shape, own) in enumerate(parts.items())]
         return Markup("; ").join(named_ones)
-    told = [
-        Markup("{}{} {}").format(
-            len(own), "" if at else f" {_be(own)}", _linked(shape, len(own), _laws(own, found))
-        )
-        for at, (shape, own) in enumerate(parts.items())
-    ]
-    return Markup("Of {} curves {}").format(len(found), listed(told))
+    groups = _groups(found)
+    if not groups:
+        counts = [
+            Markup("{}{} {}").format(len(own), "" if at else f" {_be(own)}", _linked(shape, len(own)))
+            for at, (shape, own) in enumerate(parts.items())
+        ]
+        return Markup("Of {} curves {}").format(len(found), listed(counts))
+    told = []
+    for where, curves in groups.items():
+        kinds = [
+            Markup("{} {}").format("all" if len(own) == len(curves) else len(own), _linked(shape, len(own)))
+            for shape in MEANING
+            if (own := [curve for curve in curves if _shape(curve) == shape])
+        ]
+        told.append(Markup("{}: {}").format(where, Markup(", ").join(kinds)))
+    return Markup("Curves for {}").format(Markup("; for ").join(told))
+
+
+def _groups(found: Sequence[CurveRows]) -> dict[Cell, list[CurveRows]]:
+    """Curves by law, or by one of the swept values: by what parts their shapes best; none where nothing does."""
+    most, best = max(Counter(map(_shape, found)).values()), dict[Cell, list[CurveRows]]()
+    for name in ("law", *found[0].where):
+        groups: dict[Cell, list[CurveRows]] = {}
+        for curve in found:
+            value = curve.law if name == "law" else setting(name, curve.where[name])
+            groups.setdefault(value, []).append(curve)
+        alike = sum(max(Counter(map(_shape, curves)).values()) for curves in groups.values())
+        if 2 <= len(groups) <= MOST_GROUPS and alike > most:
+            most, best = alike, groups
+    return best
 
 
 def _named(own: Sequence[CurveRows], shape: str, found: Sequence[CurveRows], first: bool) -> Markup:
@@ -116,15 +159,8 @@ def _be(own: Sequence[CurveRows]) -> str:
     return "is" if len(own) == 1 else "are"
 
 
-def _laws(own: Sequence[CurveRows], found: Sequence[CurveRows]) -> str:
-    """The laws whose every curve is of one shape, where these are all of that shape; nothing otherwise."""
-    laws = list(dict.fromkeys(each.law for each in own))
-    others = [each.law for each in found if all(each is not one for one in own)]
-    return Markup(": {}").format(listed(laws)) if others and not {*laws} & {*others} else ""
-
-
-def _linked(shape: str, count: int, whose: str = "") -> Markup:
-    return Markup('<a href="#shape">{}</a> ({}{})').format(shape, MEANING[shape][count > 1], whose)
+def _linked(shape: str, count: int) -> Markup:
+    return Markup('<a href="#shape">{}</a> ({})').format(shape, MEANING[shape][count > 1])
 
 
 def shape_grid(run: Facts) -> Grid | None:
@@ -143,7 +179,15 @@ def shape_grid(run: Facts) -> Grid | None:
     )
     heads = [Markup("{}{}").format(MEASURES[name], unit if name == "reversal_end" else "") for name in own]
     caption = "Shape of each curve against its chord, the line from rest to the end of reversal"
-    return grid(caption, ["law", "method", "curve", *heads], rows, "curves", "curves.csv", len(table))
+    found = grid(caption, ["law", "method", "curve", *heads], rows, "curves", "curves.csv", len(table))
+    return found._replace(below=" ".join(filter(None, [found.below, *_missing(table)])))
+
+
+def _missing(curves: pd.DataFrame) -> list[str]:
+    """Why measures are missing, each reason once."""
+    reasons = curves["reason"].dropna()
+    kinds = reasons.groupby(reasons.map(pattern), sort=False)
+    return [f"A measure is missing of {counted(len(kind), 'curve')}: {alike(kind)}." for _, kind in kinds]
 
 
 def _measure(run: Facts, curve: CurveRows, name: str) -> Cell:
@@ -154,4 +198,6 @@ def _measure(run: Facts, curve: CurveRows, name: str) -> Cell:
         return ""
     if name == "reversal_end":
         return run.speed_in_given_units(curve, row, name)
-    return with_error(float(row[name]), row.get(f"{name}_error"))
+    return (
+        size(row[name]) if name == "model_error" else with_error(float(row[name]), row.get(f"{name}_error"))
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -17,6 +17,7 @@ from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import beside_in_si
 from frictionlab.results.loads_in_time import loads_of, varies
+from frictionlab.results.pairs import OWN_ERROR_OF_MODELS
 from frictionlab.results.sentences_in_si import column_in_si_words
 from frictionlab.results.table import value_in
 from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
@@ -28,10 +29,16 @@ CURVE_TEXT = frozenset({"shape", "shape_by_initial", "reason"})
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
 
 
-def curve_table(table: pd.DataFrame, laws: registry.Laws = registry.INSTALLED_LAWS) -> pd.DataFrame:
+def curve_table(
+    table: pd.DataFrame,
+    laws: registry.Laws = registry.INSTALLED_LAWS,
+    reduced: Container[str] = (),
+) -> pd.DataFrame:
     """One row per curve of a result table, in its order; no rows if no curve has two belt speeds.
 
-    Points without a number are left out. A measure that cannot be determined is empty, with the reason.
+    Points without a number are left out. A measure that cannot be determined is empty, with the reason. reduced:
+    labels of methods that solve a simpler model; measures are those of its own curve, whose distance to the full
+    answers is told beside.
     """
     keys = curve_inputs(table.columns)
     groups = table.groupby(keys, sort=False, dropna=False).indices if len(table) else {}
@@ -46,7 +53,7 @@ def curve_table(table: pd.DataFrame, laws: registry.Laws = registry.INSTALLED_LA
     usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)
     inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]
     read = [
-        _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws))
+        _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws), given.get("method") in reduced)
         for found, given in zip(places, inputs, strict=True)
     ]
     own, scales = _frame(read), _speed_scales(table, places)
@@ -156,9 +163,13 @@ def _law(given: Mapping[str, Any], laws: registry.Laws) -> FrictionLaw | None:
     return law.model_validate(values).under_load(float(given["scene.normal_load"]))
 
 
-def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:
+def _measures(rows: Rows, loads: Loads, of_model: bool) -> dict[str, Any]:
     """The measures of a curve that can be determined, and the reason why others cannot."""
-    found: dict[str, Any] = _reduction(rows)
+    found: dict[str, Any] = {}
+    if of_model and rows.error.size:
+        found["model_error"] = float(rows.error.max())
+        rows = rows._replace(error=np.minimum(rows.error, OWN_ERROR_OF_MODELS))
+    found |= _reduction(rows)
     try:
         if not rows.belt_speed.size:
             raise UnreadableCurve("no point at a belt speed > 0 has a number")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Any, NamedTuple
 
@@ -17,6 +17,8 @@ MOST_BY_SETTING = 24
 _FRICTION = "law.mu", "law.mu_kinetic"
 """Of each law the one that scales friction of steady sliding."""
 ROUNDING_OF_MEANS = 1e-15
+OWN_ERROR_OF_MODELS = 1e-8
+"""Of the numbers of a reduced model, against its own formulas, at most."""
 _OTHER = " other"
 
 
@@ -55,13 +57,20 @@ def law_pairs(table: pd.DataFrame) -> list[Difference]:
     return _told([("", pair, on) for pair in combinations(laws, 2)], "law")
 
 
-def method_pairs(table: pd.DataFrame) -> list[Difference]:
-    """Every two methods at the same points of each law."""
+def method_pairs(table: pd.DataFrame, reduced: Collection[str] = ()) -> list[Difference]:
+    """Every two methods at the same points of each law.
+
+    reduced: labels of methods that solve a simpler model. They stand first, and are judged by what they are compared
+    with: what is known of their distance to the full answers is no error of the difference.
+    """
     found = table[table["mean_friction"].notna()]
+    own = found["error"].clip(upper=OWN_ERROR_OF_MODELS)
+    found = found.assign(error=found["error"].mask(found["method"].isin(reduced), own))
     on = _varied(table)
     pairs = []
     for law, rows in found.groupby("law", sort=False):
-        methods = [rows[rows["method"] == method] for method in rows["method"].unique()]
+        labels = sorted(rows["method"].unique(), key=lambda label: label not in reduced)
+        methods = [rows[rows["method"] == label] for label in labels]
         pairs += [(str(law), pair, on) for pair in combinations(methods, 2)]
     return _told(pairs, "method")
 

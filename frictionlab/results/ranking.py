@@ -54,6 +54,12 @@ class Ranking:
         """The point at which the highest is furthest above the second."""
         return int(np.argmax(np.where(self.first == NOBODY, -1.0, self.excess)))
 
+    def widest(self, places: NDArray[np.int64]) -> tuple[int, int, int]:
+        """Of these points the one at which the highest is furthest above the lowest, and the places of both."""
+        mean = self.mean[places]
+        at = int(np.argmax(np.nanmax(mean, axis=1) - np.nanmin(mean, axis=1)))
+        return int(places[at]), int(np.nanargmax(mean[at])), int(np.nanargmin(mean[at]))
+
     @property
     def has_gaps(self) -> bool:
         """Whether somebody has no number at some point."""

@@ -85,7 +85,8 @@ class GatheredTable:
             if self._shown is None:
                 self.orbits, self.harmonics = orbits, harmonics
             read = piece.results.frame(piece.inputs, names={*OF_SHAPE, *ALWAYS})
-            self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws))
+            reduced = {each.method.label for each in solving.curves if each.method.is_reduced}
+            self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws, reduced))
         if none is not None and not files.has_harmonics:
             files.add_harmonics(none)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Method
+from frictionlab.methods.base import Method, ReducedModel
 from frictionlab.mistakes.notes import number_text
 from frictionlab.quantities import Written
 from frictionlab.scene.waveforms import Form
@@ -81,6 +81,11 @@ class MethodChoice:
     def method(self) -> Method:
         """The method with its parameters."""
         return registry.method_class(self.name).model_validate(self.parameters)
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether it solves a simpler model: its errors are then the distance to the full answers."""
+        return isinstance(self.method, ReducedModel)
 
     def resolved(self) -> str | dict[str, Any]:
         """The entry of a study file: the name alone if it has neither parameters nor a label."""

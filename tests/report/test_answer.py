@@ -41,7 +41,8 @@ def told(
     """The three sentences of a run with these rows."""
     table = pd.concat(rows, ignore_index=True)
     account = {"expect": [{"passed": passed, "sentence": "x"} for passed in verdicts]}
-    study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}))
+    methods = [SimpleNamespace(label=name, is_reduced=name == "mdsm") for name in ("exact", "mdsm")]
+    study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}, methods=methods))
     saved = Saved(Path(), study, table, pd.DataFrame(curves) if curves else None, account)
     assert saved.verdicts == [Verdict(passed, "x") for passed in verdicts]
     return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved))]
@@ -91,12 +92,12 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
         f"{HIGHEST}dahl up to vb = 2 and coulomb from vb = 3 to vb = 4; "
         "at vb = 5 the highest are the same within errors; ...",
     ),
-    "laws that change places often are counted": (
+    "of laws that change places often the largest distance is told": (
         [
             curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
             curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
         ],
-        f"{HIGHEST}dahl at 4 of 7 belt speeds and coulomb at 3; ...",
+        "No law is highest everywhere: dahl is up to 0.1 above coulomb, at vb = 1.",
     ),
     "laws that do not differ by more than their errors are the same": (
         [curve("coulomb", [0.1, 0.2], error=0.02), curve("dahl", [0.11, 0.19], error=0.02)],
@@ -128,9 +129,30 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
         + [curve("stribeck", [mu + 0.01] * 2, **{"law.mu": NONE, "law.mu_kinetic": mu}) for mu in (0.1, 0.2)],
         f"{HIGHEST}stribeck at all 4 points; ...",
     ),
-    "methods of one law that agree are told with how far their errors reach": (
+    "laws that change places have the largest distance of each setting": (
+        [
+            curve(law, means, **{FREQUENCY: frequency})
+            for frequency, own in ((1.0, ([0.1, 0.3], [0.2, 0.1])), (1.5, ([0.1, 0.2], [0.3, 0.1])))
+            for law, means in zip(("coulomb", "dahl"), own, strict=True)
+        ],
+        "No law is highest everywhere: coulomb is up to 0.2 above dahl, at vb = 2, Ω = 1; "
+        "dahl is up to 0.2 above coulomb, at vb = 1, Ω = 1.5.",
+    ),
+    "a reduced model is judged by the full answers beside it": (
         ROUGH,
-        "...; exact and mdsm differ most, by 0.020 ± 0.051 at vb = 2, the same within errors.",
+        "mdsm is up to 0.02 too low, at vb = 2.",
+    ),
+    "a reduced model is judged at each setting": (
+        [
+            curve("coulomb", [0.1, 0.3 + off], error=error, **{FREQUENCY: frequency, "method": method})
+            for frequency in (1.0, 1.5)
+            for method, off, error in (("mdsm", frequency - 1.2, 0.5), ("exact", 0.0, 1e-9))
+        ],
+        "mdsm is up to 0.2 too low, at vb = 2, Ω = 1; up to 0.3 too high, at vb = 2, Ω = 1.5.",
+    ),
+    "a reduced model alone is told with its own error": (
+        ROUGH[1:],
+        "...rises from 0.10 ± 0.05 at vb = 1 to 0.30 ± 0.05 at vb = 2; mdsm is off by at most 5.0e-02, at vb = 1.",
     ),
 }
 
@@ -183,10 +205,17 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
         "The curve of coulomb is concave (above its chord); that of dahl is convex (below its chord); "
         "of 1 curve none is read (no points).",
     ),
-    "many curves are counted and a law that stands alone is named": (
+    "many curves are told by what parts their shapes": (
         [shape("coulomb", "concave", **{FREQUENCY: each}) for each in FREQUENCIES]
         + [shape("dahl", "convex", **{FREQUENCY: each}) for each in FREQUENCIES],
-        "Of 10 curves 5 are concave (above their chords: coulomb) and 5 convex (below their chords: dahl).",
+        "Curves for coulomb: all concave (above their chords); for dahl: all convex (below their chords).",
+    ),
+    "many curves whose shapes nothing parts are counted": (
+        [
+            shape("coulomb", "convex" if each == 3 else "concave", **{FREQUENCY: each})
+            for each in map(float, range(1, 9))
+        ],
+        "Of 8 curves 7 are concave (above their chords) and 1 convex (below its chord).",
     ),
     "why no shape is read is told by the commonest reason": (
         [shape("coulomb", None, "3 points"), shape("dahl", None, "4 points"), shape("lugre", None, "sticks")],
@@ -210,6 +239,14 @@ def test_a_verdict_that_another_method_cannot_decide_stands() -> None:
     assert told(curve("coulomb", [0.1, 0.2]), curves=found)[1].startswith("The curve of coulomb is concave (")
 
 
+def test_a_reduced_model_has_its_own_shape_beside_the_true_one() -> None:
+    found = [shape("coulomb", "convex", method="mdsm"), shape("coulomb", "concave")]
+
+    second = told(*ROUGH, curves=found)[1]
+    assert second.startswith("The curve of coulomb is concave (")
+    assert second.endswith("; by mdsm that is convex instead.")
+
+
 def test_a_scene_in_si_units_has_its_end_of_reversal_in_them() -> None:
     rows = curve("coulomb", [0.1, 0.2]).assign(**{"scene.dimensional.belt_speed_m_per_s": [0.25, 0.5]})
     first, second, _ = told(rows, curves=[shape("coulomb", "concave")])
@@ -223,15 +260,23 @@ def test_a_scene_in_si_units_has_its_end_of_reversal_in_them() -> None:
 
 def test_that_nothing_needs_attention_is_said_with_what_was_looked_at() -> None:
     assert told(curve("coulomb", [0.1, 0.2]), verdicts=[True, True])[2] == (
-        "Nothing needs attention: all 2 points are ok, with no error above the tolerance of 1e-08, "
+        "Nothing needs attention: all 2 points are ok, with errors of at most 1.0e-09, "
         "and both expectations hold."
     )
 
 
 def test_errors_above_the_tolerance_and_expectations_that_failed_need_attention() -> None:
-    assert told(*ROUGH, verdicts=[True, False])[2] == (
-        "Needs attention: the error exceeds the tolerance of 1e-08 at 2 points, up to 0.05 (by mdsm); "
+    rough = curve("dahl", [0.1, 0.2], error=0.05)
+    assert told(*ROUGH, rough, verdicts=[True, False])[2] == (
+        "Needs attention: the error exceeds the tolerance of 1e-08 at 2 points, up to 0.05 (dahl, by exact); "
         "1 of 2 expectations FAILED."
+    )
+
+
+def test_the_own_error_of_a_reduced_model_needs_no_attention() -> None:
+    assert told(*ROUGH)[2] == (
+        "Nothing needs attention: all 4 points are ok, with errors of at most 1.0e-09 "
+        "but for what the models leave out."
     )
 
 

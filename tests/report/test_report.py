@@ -312,7 +312,8 @@ def test_many_expectations_are_folded_and_not_left_out_where_they_all_hold(ran: 
     assert failed.table("What the study expects")[1][0] == "FAILED"
     assert "expectations of the study hold" not in failed.all("main")[0].text
     assert [each.text for each in failed.all("summary")] == [
-        "As BibTeX, frictionlab included",
+        "In full, and as BibTeX, frictionlab included",
+        "Versions, and when it ran",
         "The study, with every default and every sweep written out",
     ]
 

@@ -320,7 +320,7 @@ CURVES: dict[str, str] = {
     "shape_by_initial": "verdict by the curvature at rest: concave, convex or undecided",
     "reduction": "largest fall of mean friction below that of steady sliding",
     "reduction_error": "bound on its error",
-    "model_error": "of a reduced model, whose other measures are those of its own curve: largest error of its means",
+    "model_distance": "of a reduced model, measured by its own curve: its largest distance to the full means",
     "reason": "why a measure is empty",
 }
 """The columns of the table of curves after the inputs."""

@@ -35,7 +35,7 @@ MEASURES = {
     "shape_half": "share at half the range",
     "shape_initial": "curvature at rest",
     "shape_by_initial": "shape at rest",
-    "model_error": "distance to the full curve",
+    "model_distance": "distance to the full curve",
 }
 """Columns of ``curves.csv`` that are shown, and their heads."""
 
@@ -199,5 +199,7 @@ def _measure(run: Facts, curve: CurveRows, name: str) -> Cell:
     if name == "reversal_end":
         return run.speed_in_given_units(curve, row, name)
     return (
-        size(row[name]) if name == "model_error" else with_error(float(row[name]), row.get(f"{name}_error"))
+        size(row[name])
+        if name == "model_distance"
+        else with_error(float(row[name]), row.get(f"{name}_error"))
     )

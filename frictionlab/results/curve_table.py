@@ -167,7 +167,7 @@ def _measures(rows: Rows, loads: Loads, of_model: bool) -> dict[str, Any]:
     """The measures of a curve that can be determined, and the reason why others cannot."""
     found: dict[str, Any] = {}
     if of_model and rows.error.size:
-        found["model_error"] = float(rows.error.max())
+        found["model_distance"] = float(rows.error.max())
         rows = rows._replace(error=np.minimum(rows.error, OWN_ERROR_OF_MODELS))
     found |= _reduction(rows)
     try:

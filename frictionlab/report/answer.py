@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-import numpy as np
 import pandas as pd
 from markupsafe import Markup, escape
 
@@ -167,19 +166,11 @@ class _Ranked(NamedTuple):
 
     def spread(self) -> Markup:
         """How far the highest is above the lowest at most, for each setting where these are few."""
-        points = self.ranking.points
-        others = [name for name in points if name != self.along]
-        groups = (
-            list(points.reset_index(drop=True).groupby(others, sort=False).indices.values()) if others else []
-        )
-        if not 1 <= len(groups) <= MOST_STRETCHES:
-            groups = [np.arange(len(points))]
         told = []
-        for places in groups:
-            at, high, low = self.ranking.widest(places)
+        for at, high, low in self.ranking.widest(self.along, MOST_STRETCHES):
             mean, error = self.ranking.mean[at], self.ranking.error[at]
             apart = with_error(float(mean[high] - mean[low]), float(error[high] + error[low]), IN_SHORT)
-            where = settings(points.iloc[at].to_dict())
+            where = settings(self.ranking.points.iloc[at].to_dict())
             told.append(
                 Markup("{} is up to {} above {}, at {}").format(self.name(high), apart, self.name(low), where)
             )

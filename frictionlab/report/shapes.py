@@ -25,7 +25,7 @@ MEANING = {
     "undecided": ("its errors leave it open", "their errors leave it open"),
 }
 """Of each verdict what it says of one curve, and of several."""
-WRONG = [{"concave", "convex"}, {"concave", "mixed"}, {"convex", "mixed"}]
+CONTRADICTORY = [{"concave", "convex"}, {"concave", "mixed"}, {"convex", "mixed"}]
 """Verdicts on the same curve that speak against each other."""
 MEASURES = {
     "shape": "shape",
@@ -80,7 +80,7 @@ def _otherwise(run: Facts, curves: pd.DataFrame, found: Sequence[CurveRows]) -> 
     told = Markup("")
     for method in dict.fromkeys(each.method for each in own):
         of_it = [each for each in own if each.method == method]
-        others = [each for each in of_it if {_shape(each), full[f"{each.law}, {each.name}"]} in WRONG]
+        others = [each for each in of_it if {_shape(each), full[f"{each.law}, {each.name}"]} in CONTRADICTORY]
         if others:
             which = "that" if len(of_it) == 1 else f"{len(others)} of {len(of_it)}"
             shapes = listed([*dict.fromkeys(_shape(each) for each in others)])

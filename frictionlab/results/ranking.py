@@ -54,8 +54,17 @@ class Ranking:
         """The point at which the highest is furthest above the second."""
         return int(np.argmax(np.where(self.first == NOBODY, -1.0, self.excess)))
 
-    def widest(self, places: NDArray[np.int64]) -> tuple[int, int, int]:
-        """Of these points the one at which the highest is furthest above the lowest, and the places of both."""
+    def widest(self, along: str, most: int) -> list[tuple[int, int, int]]:
+        """Where the highest is furthest above the lowest: the point, and the places of both.
+
+        For each setting of what is not along the axis, where these are so many at most; else once.
+        """
+        others = [name for name in self.points if name != along]
+        groups = self.points.reset_index(drop=True).groupby(others, sort=False).indices if others else {}
+        every = [np.arange(len(self.points))]
+        return [self._widest(places) for places in (groups.values() if 0 < len(groups) <= most else every)]
+
+    def _widest(self, places: NDArray[np.int64]) -> tuple[int, int, int]:
         mean = self.mean[places]
         at = int(np.argmax(np.nanmax(mean, axis=1) - np.nanmin(mean, axis=1)))
         return int(places[at]), int(np.nanargmax(mean[at])), int(np.nanargmin(mean[at]))

@@ -39,8 +39,10 @@ ARROWS = {
         "theory": "laws quantities scene",
         "shape": "laws quantities",
         "methods.base": "laws orbit quantities scene",
-        "methods.under_way": "compile",
-        "methods.periodic": "compile dynamics laws numerics orbit quantities scene theory",
+        "methods.under_way": "compile laws",
+        "methods.periodic": (
+            "compile dynamics laws methods.under_way numerics orbit quantities scene theory"
+        ),
         "methods.prescribed": (
             "compile dynamics laws orbit quantities scene theory methods.base methods.periodic "
             "methods.under_way"

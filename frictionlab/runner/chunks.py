@@ -14,6 +14,7 @@ from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.part import Places
+from frictionlab.runner.kept_calls import KeptCalls
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 
@@ -44,13 +45,17 @@ def task_of(study: Study) -> Task:
 
 @dataclass(frozen=True)
 class Chunk:
-    """Neighbouring points of one curve, ascending in belt speed, with the table row of each."""
+    """Neighbouring points of one curve, ascending in belt speed, with the table row of each.
+
+    calls: where long calls for them are kept until all are solved, if anywhere.
+    """
 
     rows: Places
     scenes: Scenes
     law: FrictionLaw
     method: Method
     task: Task
+    calls: KeptCalls | None = None
 
     def of(self, places: Sequence[int] | slice | Places) -> Chunk:
         """The points at these places."""

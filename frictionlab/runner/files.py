@@ -12,7 +12,7 @@ from typing import Any
 from frictionlab.runner.errors import SaveError
 
 _TEMPORARY = re.compile(
-    r"\.(?:results\.parquet|orbits\.parquet|.+\.(?:chunk|csv|html|json|py|yaml))\.(?P<process>\d+)"
+    r"\.(?:results\.parquet|orbits\.parquet|.+\.(?:call|chunk|csv|html|json|py|yaml))\.(?P<process>\d+)"
 )
 
 

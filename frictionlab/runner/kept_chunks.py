@@ -25,6 +25,7 @@ from frictionlab.results.part import KeptRows, Part
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.code_digest import solving_code
 from frictionlab.runner.files import remove_leftovers, write_whole
+from frictionlab.runner.kept_calls import KeptCalls
 
 FolderName = str | PathLike[str]
 FOLDER = ".cache"
@@ -114,13 +115,19 @@ class KeptChunks:
         write_whole(path, _packed(part))
         return True
 
+    def calls(self, key: str) -> KeptCalls:
+        """Where those of the chunk of a key are kept, as long as it is under way."""
+        with suppress(OSError):  # what cannot be written then is not kept
+            self.folder.mkdir(parents=True, exist_ok=True)
+        return KeptCalls(self._path(key).with_suffix(".calls"))
+
     def trim(self) -> None:
         """Remove those used longest ago until the rest is small enough; none that this run has used."""
         files = []
-        for folder in self.folder.glob("??"):
+        for folder in [*self.folder.glob("??"), *self.folder.glob("??/*.calls")]:
             with suppress(OSError):
                 remove_leftovers(folder)
-        for path in self.folder.glob("??/*.chunk"):
+        for path in [*self.folder.glob("??/*.chunk"), *self.folder.glob("??/*.calls/*")]:
             with suppress(OSError):  # another process removed it
                 there = path.stat()
                 files.append((there.st_mtime, there.st_size, path))
@@ -130,6 +137,8 @@ class KeptChunks:
                 return
             with suppress(OSError):
                 path.unlink()
+                if path.suffix == ".call":
+                    path.parent.rmdir()  # once it is empty
             size -= bytes_
 
     def _path(self, key: str) -> Path:

@@ -45,14 +45,13 @@ def solve_within(chunk: Chunk) -> Solved:
 def solve_timed(chunk: Chunk) -> Solved:
     """Answer every point of a chunk on this thread. Raises BrokenPlugin."""
     begun = time.perf_counter()
-    start = begun - seconds_compiling()
-    now = under_way[id(chunk)] = UnderWay(start, begun)
+    now = under_way[id(chunk)] = UnderWay(begun - seconds_compiling(), begun, calls=chunk.calls)
     try:
         with told_to(now):
             parts = solve(chunk)
     finally:
         under_way.pop(id(chunk), None)
-    return Solved(parts, time.perf_counter() - seconds_compiling() - start)
+    return Solved(parts, time.perf_counter() - seconds_compiling() - now.begun)
 
 
 def _killed(chunk: Chunk) -> Part:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor
+from dataclasses import replace
 from itertools import chain, count
 from typing import NamedTuple
 
@@ -44,6 +45,11 @@ class Keeping(NamedTuple):
             if self.must_keep:
                 raise
             return False
+
+    def keep_calls(self, work: OpenChunk) -> None:
+        """Long calls for a chunk that is sent out, if it has a key."""
+        if self.kept is not None and work.key is not None:
+            work.chunk = replace(work.chunk, calls=self.kept.calls(work.key))
 
 
 IN_MEMORY = Keeping()
@@ -104,6 +110,7 @@ class Solving:
         def to_solve() -> Iterator[OpenChunk]:
             for each in self._open_chunks():
                 if each.number % shares == number - 1 and not self._is_known(each):
+                    self._keeping.keep_calls(each)
                     forecast.sent(each)
                     yield each
 
@@ -150,18 +157,19 @@ class Solving:
         return True
 
     def _take(self, work: OpenChunk, solved: Solved) -> None:
-        parts = solved.parts
         self.computed += len(work.left)
         self._forecast.came_back(work, solved.seconds)
         self._sent.pop(work.key or "", None)
-        if not work.is_whole:
-            self._answers[work.number] = parts
-            return
-        part = work.one_answer(parts)
-        is_kept = self._keeping.keep(work.key, part)
-        for each in (work, *work.same):
-            self._enter(each, part, is_kept)
-        self.found += sum(len(each.left) for each in work.same)
+        if work.is_whole:
+            part = work.one_answer(solved.parts)
+            is_kept = self._keeping.keep(work.key, part)
+            for each in (work, *work.same):
+                self._enter(each, part, is_kept)
+            self.found += sum(len(each.left) for each in work.same)
+        else:
+            self._answers[work.number] = solved.parts
+        if work.chunk.calls is not None:
+            work.chunk.calls.remove()
 
     def _enter(self, work: OpenChunk, part: Part, is_kept: bool) -> None:
         if is_kept and work.key is not None and not self.in_memory:

@@ -46,7 +46,7 @@ from frictionlab.methods.shooting.undriven_path import (
     TooMuchWork,
     UndrivenPath,
 )
-from frictionlab.methods.under_way import each_told
+from frictionlab.methods.under_way import each_told, once
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track
 from frictionlab.quantities import Floats
@@ -186,6 +186,14 @@ class Undriven:
             if motion is None:
                 raise
             return motion
+
+    def motion_or_why_not(self) -> tuple[PeriodicMotion | str, float]:
+        """The motion, or why none was found, and kernel time [s]."""
+        try:
+            motion: PeriodicMotion | str = self.motion()
+        except NotFound as problem:
+            motion = str(problem)
+        return motion, self.effort.seconds
 
     def _followed(self, way: Way) -> PeriodicMotion:
         """Where the motion from the start leads on a moving belt. Raises NotFound."""
@@ -432,13 +440,10 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
     found: dict[int, tuple[Undriven, PeriodicMotion]] = {}
     for i, scene in enumerate(each_told(scenes)):
         undriven = Undriven(scene, law, tolerance)
-        try:
-            motion = undriven.motion()
-        except NotFound as problem:
-            reason[i] = str(problem)
+        motion, seconds[i] = once(undriven.motion_or_why_not, scene.belt_speed)
+        if isinstance(motion, str):
+            reason[i] = motion
             continue
-        finally:
-            seconds[i] = undriven.effort.seconds
         found[i] = undriven, motion
         status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
         mean[i], error[i] = motion.mean, motion.error

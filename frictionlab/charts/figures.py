@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import pandas as pd
@@ -25,6 +25,7 @@ from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.sweeps import plain
 from frictionlab.columns import SI, by_plain_names
 from frictionlab.printable import printable
+from frictionlab.study import Study
 from frictionlab.study.figure_options import FORMATS, USUAL_FIGURES, FigureOptions
 from frictionlab.units.shown import ShownUnit, in_shown_units
 
@@ -62,7 +63,7 @@ class FigureData:
     """What figures are drawn of: a result table, and of the same run what there is of the rest.
 
     curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``. units: in which the numbers of a
-    scene in SI units were written; tables given are then in these.
+    scene in SI units were written; tables given are then in these. words: for labels of laws and methods.
     """
 
     table: pd.DataFrame
@@ -73,12 +74,26 @@ class FigureData:
     kept: Kept | None = None
     options: FigureOptions = USUAL_FIGURES
     units: Mapping[str, ShownUnit] = field(default_factory=dict)
+    words: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Tables into the units in which they are shown."""
+        """Tables into the units in which they are shown, and the words for laws and methods."""
         for name in ("table", "onsets", "curves", "attractors"):
             if (table := getattr(self, name)) is not None:
-                object.__setattr__(self, name, in_shown_units(table, self.units))
+                object.__setattr__(self, name, self.shown(table))
+
+    @classmethod
+    def of(cls, study: Study, table: pd.DataFrame, title: str = "", **more: Any) -> FigureData:
+        """That of a table of a study, and of what else of its run is given."""
+        told: dict[str, Any] = {"options": study.figures, "units": study.units, "words": study.in_words}
+        return cls(table, title, **told | more)
+
+    def shown(self, table: pd.DataFrame) -> pd.DataFrame:
+        """A table of the run in the units in which it is shown, laws and methods in words."""
+        said = {
+            name: table[name].replace(words) for name, words in self.words.items() if name in table and words
+        }
+        return in_shown_units(table.assign(**said) if said else table, self.units)
 
     @cached_property
     def family(self) -> Family | None:
@@ -98,7 +113,8 @@ class FigureData:
     @property
     def reference(self) -> str | None:
         """The law that others are held against; None where there is only one."""
-        return reference_law(self.family, self.options.against) if self.family else None
+        against = self.words.get("law", {}).get(self.options.against or "", self.options.against)
+        return reference_law(self.family, against) if self.family else None
 
     @cached_property
     def columns(self) -> dict[str, list[str]]:
@@ -150,9 +166,7 @@ def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
     if data.kept is not None and data.family is not None:
         found |= orbit_figures(data.family, data.kept.orbits, data.heading, data.units)
         if data.kept.harmonics is not None:
-            found |= harmonic_figures(
-                in_shown_units(data.kept.harmonics, data.units), data.heading, data.options
-            )
+            found |= harmonic_figures(data.shown(data.kept.harmonics), data.heading, data.options)
     if data.attractors is not None:
         found |= bifurcation_figures(data.attractors, data.heading)
     return found

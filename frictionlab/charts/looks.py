@@ -138,7 +138,7 @@ def _label(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
     if methods:
         told.append(joined_methods(methods, room))
     if curve.member is not None and curve.member.value is not None:
-        told.append(curve.member.text)
+        told.append(curve.member.brief if told else curve.member.text)
     return ", ".join(told)
 
 

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from frictionlab.charts.curves import CurveData
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.sheet import text_width
-from frictionlab.columns import ONSETS, symbol
+from frictionlab.columns import ONSETS
 
 SIGNS = {"stick_begins": ">", "stick_ends": "<", "reversal_ends": "d", "multiplier_leaves": "*"}
 """The mark of each on the axis of belt speed: arrowheads enclose a window of stick."""
@@ -100,4 +100,4 @@ def _name(at: float, curve: CurveData, several: bool) -> str:
     name = r"$V_\mathrm{lin}$" if at > 0 else r"$-V_\mathrm{lin}$"
     if not several or curve.member is None:
         return name
-    return f"{name}, {symbol(curve.member.name)} = {curve.member.text}"
+    return f"{name}, {curve.member.brief}"

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import SHOWN_IN_PART, belt_speed, given, leading, quantity, unit_shown, word
+from frictionlab.columns import SHOWN_IN_PART, belt_speed, given, leading, quantity, symbol, unit_shown, word
 
 T = TypeVar("T")
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
@@ -36,6 +36,11 @@ class SweptValue(NamedTuple):
         if isinstance(self.value, str):
             return shortened(self.value, LONGEST_LABEL)
         return "" if self.value is None else f"{self.value:.5g} {unit_shown(self.name)}".rstrip()
+
+    @property
+    def brief(self) -> str:
+        """Its symbol with the value, a word alone."""
+        return self.text if isinstance(self.value, str) else f"{symbol(self.name)} = {self.text}"
 
     @property
     def sentence(self) -> str:

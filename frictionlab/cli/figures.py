@@ -27,5 +27,5 @@ def figure_data(saved: Saved) -> FigureData:
     from frictionlab.charts.figures import FigureData, Kept
 
     kept = Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)
-    more = saved.onsets, saved.curves, saved.attractors, kept, saved.study.figures, saved.study.units
-    return FigureData(saved.table, saved.title, *more)
+    more = {"onsets": saved.onsets, "curves": saved.curves, "attractors": saved.attractors, "kept": kept}
+    return FigureData.of(saved.study, saved.table, saved.title, **more)

@@ -48,6 +48,7 @@ Number = float | int | tuple[float, ...]
 class FrictionLaw(Labelled, ABC):
     """A law of dry friction: the friction coefficient, per unit normal load, that resists slip.
 
+    ``in_words`` is what figures call it, its label where left out.
     The docstring of a law names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one
     string, except those already in frictionlab's bibliography; a source without an entry is cited as written.
     ``expected_failures`` maps each check of the conformance battery that the law must fail to the reason.
@@ -70,6 +71,7 @@ class FrictionLaw(Labelled, ABC):
     array([0.4 , 0.3 , 0.25])
     """
 
+    in_words: ClassVar[str] = ""
     bibtex: ClassVar[str] = ""
     expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
     memory_kind: ClassVar[Literal["undeclared", "none", "bristle", "deflections", "scalars"]] = "undeclared"

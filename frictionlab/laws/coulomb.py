@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from pydantic import model_validator
 
@@ -25,6 +26,7 @@ class Coulomb(SlidingLaw):
     0.5
     """
 
+    in_words: ClassVar[str] = "Coulomb"
     mu: Positive
     mu_static: Positive | None = None
 

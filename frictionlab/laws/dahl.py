@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, ClassVar
 
 from frictionlab.laws.base import NonNegative, Positive
 from frictionlab.laws.compliant import CompliantLaw
@@ -27,6 +27,7 @@ class Dahl(CompliantLaw):
     (0.0507, 0.01)
     """
 
+    in_words: ClassVar[str] = "Dahl"
     mu: Positive
     exponent: NonNegative = 1.0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -38,6 +38,7 @@ class ElastoPlastic(StribeckBristle):
     (0.0507, 0.007)
     """
 
+    in_words: ClassVar[str] = "Elasto-plastic"
     breakaway_ratio: Share = 0.7
 
     def rate(self, v: Any, z: Any) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, ClassVar
 
 from frictionlab.laws.base import Positive
 from frictionlab.laws.compliant import CompliantLaw
@@ -26,6 +26,7 @@ class Jenkins(CompliantLaw):
     (0.0507, 0.01)
     """
 
+    in_words: ClassVar[str] = "Jenkins"
     mu: Positive
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from frictionlab.laws.decay import exp_decay
 from frictionlab.laws.stribeck_bristle import StribeckBristle, stribeck_curve
@@ -30,6 +30,8 @@ class LuGre(StribeckBristle):
     >>> round(fl.steady_state(scene, law).mean_friction, 4)
     0.0306
     """
+
+    in_words: ClassVar[str] = "LuGre"
 
     def rate(self, v: Any, z: Any) -> Any:
         """z' = v - |v| z stiffness/g."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -35,6 +35,7 @@ class Stribeck(SlidingLaw):
     0.0306
     """
 
+    in_words: ClassVar[str] = "Stribeck"
     mu_kinetic: NonNegative
     mu_static: Positive
     stribeck_speed: Speed = 1.0

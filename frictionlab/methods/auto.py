@@ -36,6 +36,7 @@ class Auto(Method):
     """
 
     name: ClassVar[str] = "auto"
+    in_words: ClassVar[str] = "steady state"
     resolves_events: ClassVar[bool] = True
 
     def choice(self, scene: Scene, law: FrictionLaw) -> tuple[Method | None, str]:

@@ -107,6 +107,8 @@ class Method(Record, ABC):
     """
 
     name: ClassVar[str]
+    in_words: ClassVar[str] = ""
+    """What figures call it, its label where left out."""
     resolves_events: ClassVar[bool] = False
     """Whether instants of stick and reversal are solved for: else rest is known to a step or to a model."""
     bibtex: ClassVar[str] = ""

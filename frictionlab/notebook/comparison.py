@@ -161,10 +161,8 @@ class Comparison:
         study = self.study
         asked = figure_options(study.figures.resolved() | options, tuple(law.label for law in study.laws))
         marked = self.onsets if onsets else None
-        data = FigureData(
-            whole(self.table), study.title, marked, self.curves, options=asked, units=study.units
-        )
-        return figure_of(data, figure)
+        told = {"onsets": marked, "curves": self.curves, "options": asked}
+        return figure_of(FigureData.of(study, whole(self.table), study.title, **told), figure)
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.
@@ -185,10 +183,8 @@ class Comparison:
         from frictionlab.report.page import write_report
 
         saved = saved_as(with_onsets(save_run(self.run, Path(folder), self.seconds)))
-        study = saved.study
-        data = FigureData(
-            saved.table, saved.title, saved.onsets, saved.curves, options=study.figures, units=study.units
-        )
+        told = {"onsets": saved.onsets, "curves": saved.curves}
+        data = FigureData.of(saved.study, saved.table, saved.title, **told)
         draw_figures(data, saved.folder / "figures")
         write_report(saved, data)
         return saved.folder

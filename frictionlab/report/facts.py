@@ -65,8 +65,7 @@ class Facts:
     @cached_property
     def figures(self) -> FigureData:
         """What its figures of the table are drawn of."""
-        study = self.saved.study
-        return self.drawn or FigureData(self.saved.table, options=study.figures, units=study.units)
+        return self.drawn or FigureData.of(self.saved.study, self.saved.table)
 
     @cached_property
     def reduced(self) -> frozenset[str]:

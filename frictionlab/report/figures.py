@@ -51,7 +51,7 @@ def pictures(run: Facts) -> list[Picture]:
         caption = escape(f"{told.format(reference=run.figures.reference)}.")
         one = _picture(run, name, caption, narrow=family is None or len(family.panels) == 1)
         found += [one] if one.address else []
-    several = {} if attractors is None else bifurcations(attractors)
+    several = {} if attractors is None else bifurcations(run.figures.shown(attractors))
     return found + [_picture(run, name, _of_bifurcation(rows)) for name, rows in several.items()]
 
 
@@ -93,7 +93,7 @@ def _of_table(run: Facts, family: Family, name: str) -> Picture:
     else:
         over = Markup(" and ").join(map(word_html, maps.over))
         told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
-        names = (joined_values(run.table[name]) for name in ("law", "method"))
+        names = (joined_values(run.figures.table[name]) for name in ("law", "method"))
         lines = [Markup("Laws: {}; methods: {}").format(*names)]
     if name == next(iter(run.figures.columns)):
         told += [*lines, *_held_and_missing(run)]

@@ -218,6 +218,11 @@ class StudyGrid:
         return {_in_scene(*each) for each in found}
 
     @cached_property
+    def in_words(self) -> dict[str, dict[str, str]]:
+        """What figures call laws and methods, by their labels."""
+        return {"law": _told_apart(self.laws), "method": _told_apart(self.methods)}
+
+    @cached_property
     def units(self) -> dict[str, ShownUnit]:
         """The units in which numbers of a scene in SI units and of its laws were written, by columns of the table."""
         values: dict[str, Any] = {f"{SCENE}{path}": each for path, each in self.scene.given_values().items()}
@@ -269,6 +274,15 @@ def grid_size(grid: StudyGrid) -> int:
     laws = sum(grid_points(grid.own_axes(law)) for law in grid.laws)
     points = sum(map(len, grid.chosen)) if grid.chosen else grid_points(grid.scene_axes)
     return points * laws * len(grid.methods)
+
+
+def _told_apart(choices: Sequence[LawChoice | MethodChoice]) -> dict[str, str]:
+    """The words of each by its label; the label where another has the same words."""
+    words = [each.in_words for each in choices]
+    return {
+        each.label: said if words.count(said) == 1 else each.label
+        for each, said in zip(choices, words, strict=True)
+    }
 
 
 def of_law(axis: Axis, choice: LawChoice) -> dict[str, tuple[GridValue, ...]]:

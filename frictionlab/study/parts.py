@@ -45,6 +45,11 @@ class LawChoice:
             STATIC: tuple(static if mu == given else mu * ratio for mu in numbers),
         }
 
+    @property
+    def in_words(self) -> str:
+        """What figures call it: the label that the study gives it, else the law's own words."""
+        return self.label if self.label != self.kind else self.law_class.in_words or self.label
+
     def resolved(self) -> dict[str, Any]:
         """The entry of a study file."""
         label = {} if self.label == self.kind else {"label": self.label}
@@ -86,6 +91,15 @@ class MethodChoice:
     def is_reduced(self) -> bool:
         """Whether it solves a simpler model: its errors are then the distance to the full answers."""
         return isinstance(self.method, ReducedModel)
+
+    @property
+    def in_words(self) -> str:
+        """What figures call it: the label that the study gives it, else the method's own words."""
+        try:
+            words = registry.method_class(self.name).in_words
+        except (KeyError, registry.BrokenPlugin):  # of a run made where it could be used
+            words = ""
+        return self.label if self.label != self.name else words or self.label
 
     def resolved(self) -> str | dict[str, Any]:
         """The entry of a study file: the name alone if it has neither parameters nor a label."""

@@ -267,7 +267,7 @@ def test_a_sweep_of_one_law_leaves_the_other_law_one_curve(resonance: pd.DataFra
     soft = [resonance.assign(law="dahl", **{"law.mu": np.nan, "law.stiffness": s}) for s in (4.0, 40.0)]
     table = _joined([resonance.assign(**{"law.stiffness": np.nan}), *soft])
 
-    assert legend_of(_figure(table)) == ["coulomb", "dahl, 4", "dahl, 40"]
+    assert legend_of(_figure(table)) == ["coulomb", r"dahl, $\sigma_0$ = 4", r"dahl, $\sigma_0$ = 40"]
 
 
 def test_points_without_a_number_are_marked_on_the_axis_and_counted(resonance: pd.DataFrame) -> None:

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
 
+import frictionlab as fl
 from frictionlab.charts.figures import FigureData, draw_figures, figure_of
 from frictionlab.charts.style import STYLE
 from frictionlab.study import StudyError, parse_study
@@ -200,3 +201,23 @@ def test_keywords_are_checked_as_the_keys_of_a_study_are() -> None:
     told = r"width: must be 'single' or 'double'(.|\n)*against: must be one of dahl"
     with pytest.raises(ValueError, match=told):
         figure_options({"against": "dahls", "width": 85}, ("dahl",))
+
+
+def test_laws_and_methods_are_told_in_words_and_labels_as_the_study_has_them() -> None:
+    laws = {"coulomb": fl.Coulomb(mu=0.4), "Dahl, softer": fl.Dahl(mu=0.4, stiffness=0.4)}
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    done = fl.compare(scene, laws, [5, 20, 45], ["auto", "mdsm"])
+
+    told = [text.get_text() for text in done.plot(against="coulomb").legends[0].get_texts()]
+
+    assert told[:2] == ["Coulomb, steady state", "Coulomb, closed form"]
+    assert told[2].startswith("Dahl, softer")
+
+
+def test_two_laws_of_the_same_words_keep_their_labels() -> None:
+    scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+    laws = {"dahl": fl.Dahl(mu=0.4, stiffness=40), "Dahl": fl.Dahl(mu=0.4, stiffness=4)}
+
+    assert fl.Study.of(scene, laws).in_words["law"] == {"dahl": "dahl", "Dahl": "Dahl"}

@@ -67,6 +67,7 @@ class March(Method):
     """
 
     name: ClassVar[str] = "march"
+    in_words: ClassVar[str] = "time stepping"
 
     stepper: StepperName | None = None
     theta: Theta | None = None

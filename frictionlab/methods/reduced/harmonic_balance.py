@@ -62,6 +62,7 @@ class HarmonicBalance(OfOneModel):
     """
 
     name: ClassVar[str] = "harmonic_balance"
+    in_words: ClassVar[str] = "harmonic balance"
     harmonics: int = Field(default=1, ge=1, le=1000, strict=True)
     tail: bool | None = Field(default=None, strict=True)
 

@@ -61,6 +61,7 @@ class Mdsm(OfOneModel):
     """
 
     name: ClassVar[str] = "mdsm"
+    in_words: ClassVar[str] = "closed form"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Friction with memory, no drive, no one steady state."""

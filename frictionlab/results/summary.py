@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import SHOWN_IN
+from frictionlab.columns import SHOWN_IN, belt_speed
 from frictionlab.printable import PLUS_MINUS, with_error
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
@@ -138,14 +138,32 @@ def columns(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _reasons(table: pd.DataFrame) -> list[str]:
-    """Why points that are not ok are not, the commonest reasons first."""
-    rest = table[table["status"] != "ok"]
-    counts = (
-        rest.groupby(["status", "reason"], dropna=False).size().sort_values(ascending=False, kind="stable")
-    )
-    lines = [f"{status} ({count}): {reason}" for (status, reason), count in counts.items()]
+    """Why points that are not ok are not: law by law those whose reasons begin alike, most points first."""
+    rest, by_methods = table[table["status"] != "ok"], table["method"].nunique() > 1
+    whose = rest["law"] + (" by " + rest["method"] if by_methods else "")
+    begins = each_once(rest["reason"], lambda reason: pattern(reason).partition(":")[0])
+    groups = [rows for _, rows in rest.groupby([whose, rest["status"], begins], sort=False)]
+    lines = [
+        f"{whose[rows.index[0]]}, {len(rows)} {rows['status'].iloc[0]} at {_speeds(rows)}: {_first(rows['reason'])}"
+        for rows in sorted(groups, key=len, reverse=True)
+    ]
     more = [f"... and {len(lines) - MOST_REASONS} more reasons"] if len(lines) > MOST_REASONS else []
     return ["", *lines[:MOST_REASONS], *more] if lines else []
+
+
+def _speeds(rows: pd.DataFrame) -> str:
+    """The belt speeds of rows."""
+    name = belt_speed(rows)
+    _, _, unit = name.partition(SHOWN_IN)
+    ends = dict.fromkeys(f"{end:.4g}" for end in (rows[name].min(), rows[name].max()))
+    return f"belt speed{'s' if len(ends) > 1 else ''} {' ... '.join(ends)} {unit}".rstrip()
+
+
+def _first(reasons: pd.Series) -> str:
+    """The commonest of reasons that begin alike, and how many others there are."""
+    counts = reasons.value_counts()
+    others = f" ({counted(len(counts) - 1, 'other')} in the table)" if len(counts) > 1 else ""
+    return f"{next(iter(counts.index), '')}{others}"
 
 
 def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:

@@ -101,7 +101,7 @@ def test_a_run_prints_curves_reasons_verdicts_and_where_the_table_is(frictionlab
     assert lines[0] == "A title"
     assert lines[1] == "4 points: 3 ok, 1 refused"
     assert any("coulomb" in line and "-0.128537 ... 0.133333" in line and "1.0e-08" in line for line in lines)
-    assert "refused (1): thirteen, of all numbers" in lines
+    assert "coulomb, 1 refused at belt speed 13: thirteen, of all numbers" in lines
     assert "expect: 1 passed" in lines
     assert "it is so" not in said.out
     assert lines[-1] == "table in runs/study/results.parquet"
@@ -412,7 +412,7 @@ def test_points_that_fail_are_code_3(frictionlab: Any, monkeypatch: Any) -> None
     said = frictionlab("run", study())
 
     assert said.code == 3
-    assert "failed (1): ZeroDivisionError: float division by zero" in said.out
+    assert "coulomb, 1 failed at belt speed 4: ZeroDivisionError: float division by zero" in said.out
 
 
 def test_an_expectation_that_fails_is_code_3(frictionlab: Any) -> None:

@@ -93,7 +93,8 @@ COLUMNS: tuple[Column, ...] = (
     Column("floquet", "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
            "multipliers"),
     Column("floquet_error", "bound on the absolute error of floquet, estimated", "multipliers"),
-    Column("normalized_friction", "mean_friction / steady sliding friction at the belt speed", "ratios", "inputs"),
+    Column("normalized_friction", "mean_friction / steady sliding friction at the belt speed", "ratios", "inputs",
+           "mean friction over steady sliding friction", r"\bar\mu/\mu"),
     Column("velocity_ratio", "belt_speed / V_lin, the largest friction-free velocity of x1 over the belt's vibration",
            "ratios", "inputs", "relative belt speed", r"v_b/V_\mathrm{lin}"),
     Column("friction_to_drive", "friction coefficient * normal_load / force amplitude", "ratios", "inputs"),
@@ -525,6 +526,12 @@ def unit_shown(name: str) -> str:
 def typeset(unit: str) -> str:
     """A unit as a person types it, in mathtext."""
     return re.sub(r"(?:\^|\*\*)(-?\d)", r"$^{\1}$", re.sub(r"\bu(?=[A-Za-z])", "µ", unit))
+
+
+def plain_word(name: str) -> str:
+    """The name of an input or column alone; for one without, the last part of its path."""
+    entry = _entry(name)
+    return entry[0] if entry else symbol(name)
 
 
 def quantity(name: str, longest: int = 80) -> str:

@@ -14,6 +14,9 @@ from typing import NamedTuple
 
 from ruamel.yaml import YAML
 
+from frictionlab.study import load_study
+from frictionlab.study.figure_options import FIGURE_NAMES
+
 GALLERY = Path(__file__).parent
 STUDIES = GALLERY.parent.parent / "studies"
 COMMAND = Path(sys.executable).parent / "frictionlab"
@@ -31,7 +34,6 @@ class Exhibit(NamedTuple):
     question: str
     read: str
     found: str
-    figure: str = "mean_friction"
     rows: str = ""
 
     def page(self, printed: str) -> str:
@@ -97,6 +99,7 @@ def make(exhibit: Exhibit) -> None:
     """Run the study; write its page and its figure."""
     with tempfile.TemporaryDirectory() as folder:
         study = f"studies/{exhibit.name}.yaml"
+        finding = load_study(STUDIES.parent / study).figures.finding
         done = subprocess.run(
             [COMMAND, "run", study, "-o", f"{folder}/run"],
             cwd=STUDIES.parent,
@@ -104,7 +107,8 @@ def make(exhibit: Exhibit) -> None:
             text=True,
             check=True,
         )
-        figure = Path(folder, "run", "figures", f"{exhibit.figure}.svg").read_text()
+        drawn = [name for name in FIGURE_NAMES if Path(folder, "run", "figures", f"{name}.svg").exists()]
+        figure = Path(folder, "run", "figures", f"{finding or drawn[0]}.svg").read_text()
     lines = [line for line in done.stdout.splitlines()[1:] if not line.startswith(("model ", "table in "))]
     (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(figure)
     (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page(exhibit.excerpt("\n".join(lines).strip())))

@@ -51,14 +51,14 @@ def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {f"{number}_bifurcation": rows for number, rows in enumerate(curves, 1)}
 
 
-def bifurcation_figures(attractors: pd.DataFrame, heading: Heading) -> dict[str, Callable[[], Figure]]:
+def bifurcation_figures(attractors: pd.DataFrame) -> dict[str, Callable[[Heading], Figure]]:
     """What draws each of them, by its name."""
-    return {name: partial(_figure, rows, heading) for name, rows in bifurcations(attractors).items()}
+    return {name: partial(_figure, rows) for name, rows in bifurcations(attractors).items()}
 
 
 def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     figure = blank_figure(PAGE, 4.6)
-    write_title(figure, heading.title)
+    write_title(figure, heading)
     above, below = figure.subplots(2, 1, sharex=True)
     speed, place = (shown_column(rows, name) for name in ("belt_speed", "x"))
     states, wild = rows[rows["point"] == 1], rows[rows["period"] == 0]

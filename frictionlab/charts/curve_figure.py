@@ -48,7 +48,6 @@ class CurveFigure:
 
     family: Family
     columns: Sequence[str]
-    heading: Heading = NO_HEADING
     onsets: pd.DataFrame | None = None
     options: FigureOptions = USUAL_FIGURES
     words: Mapping[str, str] = field(default_factory=dict)
@@ -60,11 +59,11 @@ class CurveFigure:
         """Those of the curves that are drawn."""
         return Looks(drawn_once(self.family.curves, self.columns))
 
-    def draw(self) -> Figure:
+    def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """The figure, with matplotlib's settings as they are."""
         pictures = [(panel, column) for panel in self.family.panels for column in self.columns]
         about = self.family.word(self.family.member) if self.family.member else None
-        sheet = Sheet.blank(len(pictures), self.heading, self._entries(), about)
+        sheet = Sheet.blank(len(pictures), heading, self._entries(), about)
         drawn = [
             _Picture(self, panel, column, sheet.axes(place)).draw(sheet.picture_width)
             for place, (panel, column) in enumerate(pictures)

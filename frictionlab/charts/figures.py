@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,10 +23,10 @@ from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.sweeps import plain
-from frictionlab.columns import SI, by_plain_names
+from frictionlab.columns import SI, by_plain_names, plain_word, symbol, word
 from frictionlab.printable import printable
 from frictionlab.study import Study
-from frictionlab.study.figure_options import FORMATS, USUAL_FIGURES, FigureOptions
+from frictionlab.study.figure_options import FIGURE_NAMES, FORMATS, USUAL_FIGURES, FigureOptions
 from frictionlab.units.shown import ShownUnit, in_shown_units
 
 FIGURES = {
@@ -35,20 +35,32 @@ FIGURES = {
     "energies": ["energy_input", "energy_viscous", "energy_friction", "energy_contact"],
 }
 OTHER_FIGURES = {
-    "differences": "Mean friction of each law less that of {reference}, with the sum of both errors as a band",
-    "map": "Measures of the curves over what else is swept: shades with lines of equal value",
-    "shape": "Each curve with its chord from rest to the end of reversal; the shaded area decides the verdict",
-    "hysteresis": "Friction coefficient over position of kept orbits: the area of a loop is what friction takes "
-    "per period, over the normal load",
-    "phase": "Velocity over position of kept orbits, with their Poincaré points; where a loop runs along the line of "
-    "belt speed, the body sticks",
-    "time_series": "Velocity and friction coefficient of kept orbits over one period",
-    "velocity_harmonics": "Amplitudes of the harmonics of the velocity, a picture each",
-    "friction_harmonics": "Amplitudes of the harmonics of the friction coefficient, a picture each",
+    "differences": ("Mean friction less that of {reference}", ", with the sum of both errors as a band"),
+    "map": ("Measures of the curves over what else is swept", ": shades with lines of equal value"),
+    "shape": (
+        "Curves of mean friction with their chords from rest to the end of reversal",
+        "; the shaded area decides the verdict",
+    ),
+    "hysteresis": (
+        "Friction coefficient over position",
+        ", of kept orbits: the area of a loop is what friction takes per period, over the normal load",
+    ),
+    "phase": (
+        "Velocity over position",
+        ", of kept orbits, with their Poincaré points; where a loop runs along the belt speed, the body sticks",
+    ),
+    "time_series": ("Velocity and friction coefficient over one period", ", of kept orbits"),
+    "velocity_harmonics": ("Amplitudes of the harmonics of the velocity", ", a picture each"),
+    "friction_harmonics": ("Amplitudes of the harmonics of the friction coefficient", ", a picture each"),
 }
-"""Those that only some tables have, and what they show."""
+"""Those that only some tables have: what they show, and more of it for a caption."""
+BIFURCATION = "Every state that motions end in, over belt speed"
+MOST_UNASKED = 3
+"""Figures that are drawn where no more are asked for."""
 IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
-IN_SHARES = {"mean_friction": "mean friction over steady\nsliding friction " + r"$\bar\mu/\mu$"}
+SHARES = {"mean_friction": "normalized_friction"}
+"""What is drawn in place of a column where axes are shares."""
+Drawer = Callable[[Heading], Figure]
 
 
 class Kept(NamedTuple):
@@ -105,10 +117,39 @@ class FigureData:
         """Maps in place of curves; None where lines can tell them apart."""
         return map_of(self.table)
 
-    @property
-    def heading(self) -> Heading:
-        """What stands above the pictures."""
-        return Heading(printable(self.title) if self.options.title else "", self.options.width)
+    @cached_property
+    def shares(self) -> Family | None:
+        """The curves in shares of V_lin and of steady sliding; None where they are not drawn so."""
+        return normalized(self.family) if self.family and self.options.normalized else None
+
+    def axes_of(self, name: str) -> tuple[list[str], list[str]]:
+        """What one of ``FIGURES`` is drawn over, and which columns it shows."""
+        if self.maps is not None:
+            return [*self.maps.over], self.columns[name]
+        family = self.shares or self.family
+        assert family is not None
+        shown = SHARES if self.shares else {}
+        return [family.abscissa], [shown.get(column, column) for column in self.columns[name]]
+
+    def described(self, name: str) -> str:
+        """What a figure shows, in words made from its axes."""
+        if name in self.columns:
+            over, shown = (map(plain_word, names) for names in self.axes_of(name))
+            told = f"{', '.join(shown)} over {' and '.join(over)}"
+            return f"{told[:1].upper()}{told[1:]}"
+        told, _ = OTHER_FIGURES.get(name, (BIFURCATION, ""))
+        return told.format(reference=self.reference)
+
+    def rank(self, name: str) -> tuple[bool, int]:
+        """The place of a figure among others: first the one that shows what the title says, then the most telling."""
+        kind = name.lstrip("0123456789").lstrip("_")
+        return kind != self.options.finding, FIGURE_NAMES.index(kind)
+
+    def heading(self, name: str, first: bool) -> Heading:
+        """What stands above the pictures of a figure: the title where it is the first, else what it shows."""
+        finds = first and bool(self.title)
+        told = printable(self.title) if finds else self.described(name)
+        return Heading(told if self.options.title else "", self.options.width, finds)
 
     @property
     def reference(self) -> str | None:
@@ -134,12 +175,12 @@ class FigureData:
 def draw_figures(
     data: FigureData, folder: Path, told: Callable[[int, int], None] = lambda done, total: None
 ) -> list[Path]:
-    """Draw every figure of a run into a folder, onsets marked along belt speed; the files written.
+    """Draw the figures of a run into a folder, onsets marked along belt speed; the files written.
 
     told: called with the number of figures done and of all. A table without a sweep has no figure, nor has a quantity
     that applies nowhere. Raises OSError where the folder cannot be written.
     """
-    found = figures_of(data)
+    found = chosen_of(data)
     if not found:
         return []
     folder.mkdir(parents=True, exist_ok=True)
@@ -161,15 +202,23 @@ def _remove_others(folder: Path, files: Sequence[Path]) -> None:
 
 
 def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
-    """What draws each figure of a run, by its name."""
+    """What draws each figure of a run, by its name, the most telling first."""
     found = {} if data.family is None else _of_table(data, data.family)
     if data.kept is not None and data.family is not None:
-        found |= orbit_figures(data.family, data.kept.orbits, data.heading, data.units)
+        found |= orbit_figures(data.family, data.kept.orbits, data.units)
         if data.kept.harmonics is not None:
-            found |= harmonic_figures(data.shown(data.kept.harmonics), data.heading, data.options)
+            found |= harmonic_figures(data.shown(data.kept.harmonics), data.options)
     if data.attractors is not None:
-        found |= bifurcation_figures(data.attractors, data.heading)
-    return found
+        found |= bifurcation_figures(data.attractors)
+    ranked = sorted(found, key=data.rank)
+    return {name: partial(found[name], data.heading(name, name == ranked[0])) for name in ranked}
+
+
+def chosen_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
+    """Of these the ones that are drawn: all where that is asked for, else the first and those that need asking."""
+    found = figures_of(data)
+    first = list(found)[:MOST_UNASKED]
+    return {name: draw for name, draw in found.items() if data.options.all or name in {*first, "shape"}}
 
 
 def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
@@ -189,27 +238,26 @@ def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
     return figure
 
 
-def _of_table(data: FigureData, family: Family) -> dict[str, Callable[[], Figure]]:
-    curves, maps, heading = data.curves, data.maps, data.heading
-    shares = normalized(family) if data.options.normalized else None
-    words = IN_SHARES if shares else {}
+def _of_table(data: FigureData, family: Family) -> dict[str, Drawer]:
+    curves, maps = data.curves, data.maps
+    words = {column: word(shown, 28) for column, shown in SHARES.items()} if data.shares else {}
     of_speed = data.onsets if family.along_speed else None
-    one = CurveFigure(shares or family, (), heading, of_speed, data.options, words)
-    found: dict[str, Callable[[], Figure]] = {}
+    one = CurveFigure(data.shares or family, (), of_speed, data.options, words)
+    found: dict[str, Drawer] = {}
     for name, columns in data.columns.items():
         if maps is not None:
             shown = [*columns, "error"] if name == "mean_friction" else columns
-            found[name] = replace(maps, columns=shown, heading=heading).draw
+            found[name] = replace(maps, columns=shown).draw
         else:
             found[name] = replace(one, columns=columns).draw
     if maps is None and "mean_friction" in found and (compared := _difference_figure(one, data.reference)):
         found["differences"] = compared.draw
     if curves is None:
         return found
-    if data.options.shape and (shapes := ShapeFigure.of(family, curves, heading)):
+    if (data.options.shape or data.options.all) and (shapes := ShapeFigure.of(family, curves)):
         found["shape"] = shapes.draw
     if (measures := map_of_curves(curves)) is not None:
-        found["map"] = replace(measures, heading=heading).draw
+        found["map"] = measures.draw
     return found
 
 
@@ -217,7 +265,7 @@ def _difference_figure(one: CurveFigure, law: str | None) -> CurveFigure | None:
     less = None if law is None else differences(one.family, law)
     if less is None or law is None:
         return None
-    what = r"$\bar\mu/\mu$" if one.words else r"$\bar\mu$"
+    what = symbol("normalized_friction" if one.words else "mean_friction")
     words = {"mean_friction": f"{what} less that of\n{plain(law)}"}
     options = one.options.model_copy(update={"inset": False})
     return replace(one, family=less, columns=["mean_friction"], options=options, words=words, level=True)

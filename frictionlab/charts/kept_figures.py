@@ -95,9 +95,8 @@ class OrbitPicture(NamedTuple):
 def orbit_figures(
     family: Family,
     orbits: Callable[[Sequence[int]], pd.DataFrame | None],
-    heading: Heading,
     units: Mapping[str, ShownUnit],
-) -> dict[str, Callable[[], Figure]]:
+) -> dict[str, Callable[[Heading], Figure]]:
     """What draws those of some points of a table, by its name; none where no orbit is kept. orbits: of rows.
 
     units: in which the numbers of a scene in SI units were written.
@@ -116,7 +115,7 @@ def orbit_figures(
         }
         points += [OrbitPicture(settings, list(loops.values())[::-1])] if loops else []
     total = sum(len(_values(family, panel)) for panel in family.panels)
-    drawn = {name: partial(_draw, points, kinds, total, heading) for name, kinds in KINDS.items()}
+    drawn = {name: partial(_draw, points, kinds, total) for name, kinds in KINDS.items()}
     return dict(drawn) if points else {}
 
 
@@ -221,8 +220,8 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
 
 
 def harmonic_figures(
-    harmonics: pd.DataFrame, heading: Heading, options: FigureOptions
-) -> dict[str, Callable[[], Figure]]:
+    harmonics: pd.DataFrame, options: FigureOptions
+) -> dict[str, Callable[[Heading], Figure]]:
     """What draws each, by its name; none where nothing is swept. harmonics: of ``harmonics.csv``, means left out."""
     family = _family(harmonics)
     if family is None:
@@ -233,7 +232,7 @@ def harmonic_figures(
     told = part_told(len(most), len(orders), "harmonics")
     shown = {name: _amplitude(harmonics, *told) for name, told in AMPLITUDES.items()}
     return {
-        name: CurveFigure(first, [column], heading, None, options, {column: label}, more=told).draw
+        name: CurveFigure(first, [column], None, options, {column: label}, more=told).draw
         for name, (column, label) in shown.items()
     }
 

@@ -71,14 +71,13 @@ class MapFigure:
     pictures: Sequence[CurveData]
     table: pd.DataFrame
     columns: Sequence[str] = ()
-    heading: Heading = NO_HEADING
     left_out: int = 0
 
-    def draw(self) -> Figure:
+    def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """The figure, with matplotlib's settings as they are."""
-        wide = abreast(len(self.pictures), self.heading)
+        wide = abreast(len(self.pictures), heading)
         each = -(-len(self.pictures) // wide) * wide  # a column begins on a line of its own
-        sheet = Sheet.blank(each * len(self.columns), self.heading, self._entries())
+        sheet = Sheet.blank(each * len(self.columns), heading, self._entries())
         for number, column in enumerate(self.columns):
             places = [sheet.axes(number * each + at) for at in range(len(self.pictures))]
             self._draw(sheet.figure, places, column)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from frictionlab.charts.curves import CurveData, Family, drawn_once
 from frictionlab.charts.looks import Looks
-from frictionlab.charts.sheet import Heading, Sheet, part_told
+from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, part_told
 from frictionlab.charts.sweeps import BESIDE, shortened, some_of
 from frictionlab.columns import CURVES, is_belt_speed, word
 from frictionlab.printable import with_error
@@ -39,11 +39,10 @@ class ShapeFigure:
     family: Family
     chosen: Sequence[tuple[CurveData, Chord]]
     looks: Looks
-    heading: Heading
     left_out: int = 0
 
     @classmethod
-    def of(cls, family: Family, curves: pd.DataFrame, heading: Heading) -> ShapeFigure | None:
+    def of(cls, family: Family, curves: pd.DataFrame) -> ShapeFigure | None:
         """That of a table; None where no curve has a verdict. curves: of ``curves.csv``."""
         if not is_belt_speed(family.abscissa) or "shape_start" not in curves:
             return None
@@ -51,12 +50,12 @@ class ShapeFigure:
         chords = [(curve, chord_of(curve, curves, family.abscissa)) for curve in looks.curves]
         found = [(curve, chord) for curve, chord in chords if chord is not None]
         chosen = some_of(found, MOST_SHAPES)
-        return cls(family, chosen, looks, heading, len(found) - len(chosen)) if chosen else None
+        return cls(family, chosen, looks, len(found) - len(chosen)) if chosen else None
 
-    def draw(self) -> Figure:
+    def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """The figure, with matplotlib's settings as they are."""
         told = part_told(len(self.chosen), len(self.chosen) + self.left_out, "curves")
-        sheet = Sheet.blank(len(self.chosen), self.heading, told)
+        sheet = Sheet.blank(len(self.chosen), heading, told)
         for place, (curve, chord) in enumerate(self.chosen):
             self._draw(sheet.axes(place), curve, chord)
         sheet.label_once(sheet.figure.axes)

@@ -23,10 +23,14 @@ PICTURE_SHARE = 0.8  # of the room of a picture, about, that is inside its axes
 
 
 class Heading(NamedTuple):
-    """What stands above the pictures of a figure, and the width that it is to have, as it needs where left out."""
+    """What stands above the pictures of a figure, and the width that it is to have, as it needs where left out.
+
+    finds: whether it says what was found, rather than what is shown.
+    """
 
     title: str = ""
     width: str | None = None
+    finds: bool = False
 
 
 NO_HEADING = Heading()
@@ -53,7 +57,7 @@ class Sheet(NamedTuple):
         double = heading.width == "double" or (heading.width is None and wide == 2)
         high = -(-pictures // wide)
         figure = blank_figure(PAGE if double else COLUMN, high * height)
-        lines = write_title(figure, heading.title) + _add_legend(figure, entries, about)
+        lines = write_title(figure, heading) + _add_legend(figure, entries, about)
         figure.set_figheight(high * height + LINE * lines)
         return cls(figure, high, wide)
 
@@ -81,11 +85,12 @@ def abreast(pictures: int, heading: Heading) -> int:
     return 1 if heading.width == "single" else min(2, pictures)
 
 
-def write_title(figure: Figure, title: str) -> int:
-    """Write it above the pictures; the lines it takes."""
-    lines = textwrap.wrap(plain(title), round(figure.get_figwidth() * 13))
+def write_title(figure: Figure, heading: Heading) -> int:
+    """Write it above the pictures, what was found in bold; the lines it takes."""
+    lines = textwrap.wrap(plain(heading.title), round(figure.get_figwidth() * 13))
     if lines:
-        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
+        weight = "bold" if heading.finds else "normal"
+        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight=weight)
     return len(lines)
 
 

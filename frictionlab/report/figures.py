@@ -45,14 +45,19 @@ def pictures(run: Facts) -> list[Picture]:
     The first caption says what lines mean and what is held fixed; the others lead to it. Those that only some tables
     have are there where they were drawn.
     """
-    family, attractors = run.figures.family, run.saved.attractors
-    found = [_of_table(run, family, name) for name in run.figures.columns] if family else []
-    for name, told in OTHER_FIGURES.items():
-        caption = escape(f"{told.format(reference=run.figures.reference)}.")
-        one = _picture(run, name, caption, narrow=family is None or len(family.panels) == 1)
-        found += [one] if one.address else []
-    several = {} if attractors is None else bifurcations(run.figures.shown(attractors))
-    return found + [_picture(run, name, _of_bifurcation(rows)) for name, rows in several.items()]
+    data, attractors = run.figures, run.saved.attractors
+    several = {} if attractors is None else bifurcations(data.shown(attractors))
+    drawn = {file.stem for file in (run.saved.folder / "figures").glob("*")}
+    expected = sorted(data.columns, key=data.rank)[:1]
+    names = sorted({*expected, *(drawn & {*data.columns, *OTHER_FIGURES, *several})}, key=data.rank)
+    lines_in = next((at for at, name in enumerate(names, 1) if name in data.columns), 0)
+
+    def told(at: int, name: str) -> Picture:
+        if name in data.columns:
+            return _of_table(run, name, lines_in if at != lines_in else 0)
+        return _of_bifurcation(run, name, several[name]) if name in several else _of_kept(run, name)
+
+    return [told(*each) for each in enumerate(names, 1)]
 
 
 def _picture(run: Facts, name: str, caption: Markup, more: str = "", narrow: bool = False) -> Picture:
@@ -71,35 +76,46 @@ def address(path: Path) -> str:
     return f"data:{_KINDS[first.suffix]};base64,{base64.b64encode(first.read_bytes()).decode('ascii')}"
 
 
-def _of_bifurcation(rows: DataFrame) -> Markup:
+def _of_kept(run: Facts, name: str) -> Picture:
+    _, more = OTHER_FIGURES[name]
+    family = run.figures.family
+    narrow = family is None or len(family.panels) == 1
+    return _picture(run, name, escape(f"{run.figures.described(name)}{more}."), narrow=narrow)
+
+
+def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
     """Every state that motions end in along one curve."""
     periods = sorted({int(period) for period in rows["period"]} - {0})
     found = f"periods of the response found: {', '.join(map(str, periods))}" if periods else "nothing repeats"
     wild = "; grey where the motion does not repeat" if (rows["period"] == 0).any() else ""
-    return Markup(
+    caption = Markup(
         "Of {} by {}: every state that motions end in, above the means over a whole period (with the range of means "
         "over one drive period), below the position at the start of each drive period. A marker for each period of "
         "the response{}; {}."
     ).format(joined_values(rows["law"]), joined_values(rows["method"]), wild, found)
+    return _picture(run, name, caption)
 
 
-def _of_table(run: Facts, family: Family, name: str) -> Picture:
-    columns, maps = run.figures.columns[name], run.figures.maps
+def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
+    """One of the table; lines_in: the number of the figure whose caption says what lines mean, 0 for its own."""
+    family, maps = run.figures.family, run.figures.maps
+    assert family is not None
+    axes, columns = run.figures.axes_of(name)
+    over = Markup(" and ").join(map(word_html, axes))
     shown = Markup(", ").join(map(word_html, columns))
     shown = Markup(shown[:1].upper() + shown[1:])
     if maps is None:
-        told = [Markup("{} against {}").format(shown, word_html(family.abscissa))]
+        told = [Markup("{} against {}").format(shown, over)]
         lines = list(_lines(family))
     else:
-        over = Markup(" and ").join(map(word_html, maps.over))
         told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
         names = (joined_values(run.figures.table[name]) for name in ("law", "method"))
         lines = [Markup("Laws: {}; methods: {}").format(*names)]
-    if name == next(iter(run.figures.columns)):
+    if not lines_in:
         told += [*lines, *_held_and_missing(run)]
     elif maps is None:
-        told.append(Markup("Lines as in Figure 1"))
-    known = {column: run.table[column].dropna() for column in columns}
+        told.append(Markup(f"Lines as in Figure {lines_in}"))
+    known = {column: run.figures.table[column].dropna() for column in columns}
     spans = " ".join(
         f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
         for column, found in known.items()

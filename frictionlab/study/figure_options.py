@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, StrictBool
 
@@ -14,6 +14,24 @@ from frictionlab.mistakes.validation import build_record
 WIDTHS = {"single": 85.0, "double": 175.0}
 """Of a journal's column and page [mm]."""
 FORMATS = "svg", "png", "pdf"
+FigureName = Literal[
+    "bifurcation",
+    "mean_friction",
+    "map",
+    "differences",
+    "shape",
+    "velocity",
+    "hysteresis",
+    "energies",
+    "phase",
+    "time_series",
+    "velocity_harmonics",
+    "friction_harmonics",
+]
+FIGURE_NAMES: tuple[str, ...] = get_args(FigureName)
+"""Every kind of figure, the most telling first."""
+EVERY = "all"
+"""In place of the mapping: every figure there is, drawn as usual."""
 
 
 class FigureOptions(Record):
@@ -28,6 +46,8 @@ class FigureOptions(Record):
     title: whether the study's title stands above
     shape: a figure of each curve with its chord, the area between them and the verdict
     stick: a pale band along curves wherever the body sticks in part of the period
+    all: every figure there is, not the three most telling and what is asked for alone
+    finding: the figure that shows what the title says, which is drawn first and alone bears it
     """
 
     normalized: StrictBool = False
@@ -38,6 +58,8 @@ class FigureOptions(Record):
     title: StrictBool = True
     shape: StrictBool = False
     stick: StrictBool = False
+    all: StrictBool = False
+    finding: FigureName | None = None
 
     def resolved(self) -> dict[str, Any]:
         """The entry of a study file: what differs from the defaults."""
@@ -49,7 +71,7 @@ USUAL_FIGURES = FigureOptions()
 
 def read_figure_options(given: Any, laws: tuple[str, ...] | None, notes: Notes) -> FigureOptions:
     """How figures are drawn; mistakes are noted. laws: the labels of the study, None where they are uncertain."""
-    read = build_record(FigureOptions, given, ("figures",), notes)
+    read = build_record(FigureOptions, {"all": True} if given == EVERY else given, ("figures",), notes)
     if isinstance(given, Mapping) and isinstance(given.get("against"), str) and laws is not None:
         notes.one_of(given["against"], ("figures", "against"), laws)
     return read or USUAL_FIGURES

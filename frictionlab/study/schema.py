@@ -16,7 +16,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
-from frictionlab.study.figure_options import FigureOptions
+from frictionlab.study.figure_options import EVERY, FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
 from frictionlab.study.ranges import ENDS, SpeedRange, SweepRange
 from frictionlab.study.study import SECONDS_PER_POINT
@@ -104,7 +104,10 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
             ]
         },
         "limit": _closed_object({LIMIT_KEY: _POSITIVE | {"default": SECONDS_PER_POINT}}, []),
-        "figures": _record(FigureOptions, definitions) | {"description": _KEYS["figures"]},
+        "figures": {
+            "oneOf": [{"const": EVERY}, _record(FigureOptions, definitions)],
+            "description": _KEYS["figures"],
+        },
         "keep": _closed_object(
             {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
         ),

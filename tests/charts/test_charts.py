@@ -26,6 +26,7 @@ from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE
 from frictionlab.charts.sweeps import is_logarithmic
 from frictionlab.columns import RESULTS, symbol
+from frictionlab.study.figure_options import FigureOptions
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +57,7 @@ def _family(table: pd.DataFrame) -> Family:
 
 def _figure(table: pd.DataFrame, *columns: str) -> Figure:
     with mpl.rc_context(STYLE):
-        return CurveFigure(_family(table), columns or ("mean_friction",), Heading("A title")).draw()
+        return CurveFigure(_family(table), columns or ("mean_friction",)).draw(Heading("A title"))
 
 
 def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_path: Path) -> None:
@@ -386,7 +387,7 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
     laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
     table = _joined(laws)
 
-    data = FigureData(table, r"$\bad{ 摩擦 and $3")
+    data = FigureData(table, r"$\bad{ 摩擦 and $3", options=FigureOptions(all=True))
     assert len(draw_figures(data, tmp_path)) == 2 * len(figures.figures_of(data))
     assert legend_of(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
 

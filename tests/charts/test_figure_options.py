@@ -17,7 +17,7 @@ from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
 
 import frictionlab as fl
-from frictionlab.charts.figures import FigureData, draw_figures, figure_of
+from frictionlab.charts.figures import FigureData, draw_figures, figure_of, figures_of
 from frictionlab.charts.style import STYLE
 from frictionlab.study import StudyError, parse_study
 from frictionlab.study.figure_options import FigureOptions, figure_options
@@ -221,3 +221,34 @@ def test_two_laws_of_the_same_words_keep_their_labels() -> None:
     laws = {"dahl": fl.Dahl(mu=0.4, stiffness=40), "Dahl": fl.Dahl(mu=0.4, stiffness=4)}
 
     assert fl.Study.of(scene, laws).in_words["law"] == {"dahl": "dahl", "Dahl": "Dahl"}
+
+
+def test_only_the_figure_that_shows_a_finding_bears_the_title(laws: pd.DataFrame) -> None:
+    def titles(**options: Any) -> dict[str, str]:
+        found = figures_of(FigureData(laws, "A finding", options=FigureOptions(**options)))
+        return {name: " ".join(draw().get_suptitle().split()) for name, draw in found.items()}
+
+    assert titles() == {
+        "mean_friction": "A finding",
+        "differences": "Mean friction less that of coulomb",
+        "velocity": "Velocity amplitude over belt speed",
+        "energies": "Work of the loads, viscous loss, work absorbed by friction, heat in the contact over belt speed",
+    }
+    by_speed = titles(finding="velocity", normalized=True)
+    assert next(iter(by_speed.items())) == ("velocity", "A finding")
+    told = "Mean friction over steady sliding friction over relative belt speed"
+    assert by_speed["mean_friction"] == told
+
+
+def test_three_figures_are_drawn_and_all_where_asked_for(laws: pd.DataFrame, tmp_path: Path) -> None:
+    def names(options: FigureOptions) -> set[str]:
+        return {file.stem for file in draw_figures(FigureData(laws, options=options), tmp_path)}
+
+    assert names(FigureOptions()) == {"mean_friction", "differences", "velocity"}
+    assert names(figure_options({"finding": "energies"}, ())) == {"energies", "mean_friction", "differences"}
+    assert names(parse_study(STUDY | {"figures": "all"}).figures) == {
+        "mean_friction",
+        "differences",
+        "velocity",
+        "energies",
+    }

@@ -224,7 +224,7 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
         if sum(one.stopped for one in followed.reached) < 2:
             followed.follow(start)
     for start in more:
-        if not followed.one_orbit():
+        if not followed.one_orbit() or sum(one.stopped for one in followed.reached) > 1:
             break
         followed.follow(start)
     return followed
@@ -254,10 +254,15 @@ class FollowedStarts:
         self._starts: list[Initial | None] = []
         self._fewest = MOST
 
+    @property
+    def ended(self) -> list[Attractor]:
+        """Where those led that were not stopped on their way; all, where every one was."""
+        return [one for one in self.reached if not one.stopped] or self.reached
+
     def one_orbit(self) -> bool:
-        """Whether all of them ended on one closed orbit."""
-        first = self.reached[0]
-        return first.curve is not None and all(first.agrees(other) for other in self.reached)
+        """Whether all that were not stopped ended on one closed orbit."""
+        first, *others = self.ended
+        return first.curve is not None and all(first.agrees(other) for other in others)
 
     @property
     def trial(self) -> Trial:
@@ -436,6 +441,17 @@ def describe(reached: Sequence[Destination], digits: int = 9) -> str:
     if wild:
         parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {max(wild)} drive periods")
     return "; ".join(parts)
+
+
+def left_unfinished(reached: Sequence[Attractor]) -> str:
+    """A sentence on the starts that were stopped, '' where none was."""
+    stopped = [one.followed for one in reached if one.stopped]
+    told = f"{len(stopped)} of {len(reached)} starts were followed for {max(stopped, default=0)} drive periods only"
+    return (
+        f"{told}: that took hundreds of thousands of steps, for friction near rest is steep"
+        if stopped
+        else ""
+    )
 
 
 def _describe_state(orbit: Destination, digits: int) -> str:

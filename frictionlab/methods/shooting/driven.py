@@ -37,6 +37,7 @@ from frictionlab.methods.shooting.attractors import (
     describe,
     follow_all,
     found_state,
+    left_unfinished,
     multiplier,
     quick_starts,
     same_state,
@@ -62,7 +63,6 @@ SURELY = 1e-6
 """By how much a multiplier above one is no rounding error."""
 CENTRAL = 1e-6
 """Error of multipliers by central quotients of a law without memory, absolute or of those above one."""
-STOPPED = ", and were followed no farther: that took hundreds of thousands of steps, for friction near rest is steep"
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
 HELD_ELASTICALLY = (
     "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
@@ -366,9 +366,12 @@ class SteadyStates:
             self._judge_starts(there)
 
     def _judge_starts(self, i: int) -> None:
-        """The answer that all starts reach; else the one reached from scene.initial, or none."""
+        """The answer that all starts reach; else the one reached from scene.initial, or none.
+
+        Starts that were stopped on their way tell nothing of where they lead.
+        """
         problem, scene, followed = self.problem, self.scenes[i], self.followed[i]
-        reached = followed.reached
+        reached, unfinished = followed.ended, left_unfinished(followed.reached)
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
         if not unique and scene.initial is None and (shared := self._shared(reached)) is not None:
@@ -379,11 +382,14 @@ class SteadyStates:
             self.reason[i] = said + SHARED + describe(reached)
             self.unique[i] = NOT_UNIQUE
             return
-        if not math.isnan(first.mean) and (unique or scene.initial is not None):
+        own = scene.initial is not None and not followed.reached[0].stopped
+        if not math.isnan(first.mean) and (unique or own):
             self._accept(i, first)
-            if unique:
+            if unfinished:
+                self._add(i, unfinished)
+            elif unique:
                 self.tried[i] = followed.trial
-            else:
+            if not unique:
                 self._add(i, f"reached from scene.initial; {describe(reached)}")
                 self.unique[i] = NOT_UNIQUE
             return
@@ -394,13 +400,11 @@ class SteadyStates:
             self._leave_open(i, f"{UNDAMPED}; {describe(others)}" if others else UNDAMPED, low, high)
             return
         # Where the orbit of one period is known to repel, motions that never repeat are what they seem.
-        if (
-            (problem.falls_slowly or undamped(scene))
-            and i not in self.repelling
-            and all(one.curve is None and one.average is None for one in reached)
+        wanders = (problem.falls_slowly or undamped(scene)) and i not in self.repelling
+        if all(one.stopped for one in reached) or (
+            wanders and all(one.curve is None and one.average is None for one in reached)
         ):
-            stopped = STOPPED if all(one.stopped for one in reached) else ""
-            self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
+            self.reason[i] = f"no steady state found: {unfinished or describe(reached)}"
             return
         lags = (
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"

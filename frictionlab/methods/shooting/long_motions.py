@@ -122,7 +122,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
         for motion in motions.values():
             if motion.may_go_on:
                 motion.follow(length, [one.end for one in motions.values() if one.end is not None])
-        means = _means(motions)
+        means = means_of_attractors(motions)
         open_ = [place for place, motion in motions.items() if motion.end is None]
         enough = max(problem.goal.tolerance, SMALL_ERROR)
         if len(set(means.values())) < 2 and all(
@@ -134,26 +134,26 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
     followed.seconds += sum(motion.seconds for motion in motions.values())
 
 
-def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
-    """The long means of motions that go on without repeating, one for all that are on one attractor."""
+def means_of_attractors(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
+    """The long means of motions that go on without repeating, one for all that are on one attractor.
+
+    One that seems on its way elsewhere, but has the mean of one that stays, beats more slowly than it is followed.
+    """
     alone = {
         place: long_mean([motion.means])
         for place, motion in motions.items()
-        if motion.end is None and motion.stays
+        if motion.end is None and len(motion.means) >= FEWEST_AVERAGED
     }
     groups: list[list[int]] = []
-    rising = sorted(alone, key=lambda place: alone[place].mean)
-    for place in rising:
-        if groups and near_each_other(alone[groups[-1][-1]], alone[place]):
+    for place in sorted(alone, key=lambda place: alone[place].mean):
+        if motions[place].stays and groups and near_each_other(alone[groups[-1][-1]], alone[place]):
             groups[-1].append(place)
-        else:
+        elif motions[place].stays:
             groups.append([place])
-    return {
-        place: mean
-        for group in groups
-        for mean in [long_mean([motions[each].means for each in group])]
-        for place in group
-    }
+    of_groups = [long_mean([motions[place].means for place in group]) for group in groups]
+    means = {place: mean for group, mean in zip(groups, of_groups, strict=True) for place in group}
+    beating = [(place, own, mean) for place, own in alone.items() if place not in means for mean in of_groups]
+    return means | {place: mean for place, own, mean in beating if near_each_other(mean, own)}
 
 
 def with_errors_of_maps(motions: dict[int, LongMotion], means: dict[int, LongMean]) -> dict[int, LongMean]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from itertools import count
 
 import numpy as np
 import pytest
@@ -106,3 +108,42 @@ def test_python_gets_them_as_a_table():
     assert alone["mean_friction"][0] == pytest.approx(mean, abs=1e-8)
     with pytest.raises(ValueError, match="starts"):
         fl.attractors(SCENE, STEEP, [0.4], starts=0)
+
+
+SWUNG = fl.Scene(
+    damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(unbalance=10.0, frequency=1.0)
+)
+FALLS = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4)
+
+
+def stop_some(monkeypatch, which) -> None:
+    """As for too many steps, after three periods, those of these places among the starts that are followed."""
+    follow, places = attractors.PeriodicProblem.carried, count()
+
+    def stopped(problem, speed, state, patience, known):
+        stop = which(next(places))
+        return follow(problem, speed, state, 3 if stop else patience, None if stop else known)
+
+    monkeypatch.setattr(attractors.PeriodicProblem, "carried", stopped)
+
+
+@pytest.mark.parametrize("given", [None, fl.Initial(x=0.1)])
+def test_a_start_that_was_stopped_says_nothing_of_where_it_leads(given, monkeypatch):
+    scene = SWUNG.model_copy(update={"initial": given})
+    whole = Shooting().solve([scene], FALLS, 1e-8)
+    stop_some(monkeypatch, lambda place: place == 0)
+    answer = Shooting().solve([scene], FALLS, 1e-8)
+
+    assert (whole.status, whole.unique) == (["ok"], ["tested"])
+    assert answer.status == ["ok"]
+    assert answer.mean[0] == pytest.approx(whole.mean[0], abs=1e-9)
+    assert answer.unique == [""]
+    assert re.search("1 of 1[89] starts were followed for 3 drive periods only", answer.reason[0])
+
+
+def test_starts_that_were_all_stopped_find_nothing(monkeypatch):
+    stop_some(monkeypatch, lambda place: True)
+    answer = Shooting().solve([SWUNG], FALLS, 1e-8)
+
+    assert answer.status == ["failed"]
+    assert "2 of 2 starts were followed for 3 drive periods only" in answer.reason[0]

@@ -12,7 +12,13 @@ import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import Attractor
 from frictionlab.methods.shooting.long_mean import LongMean, birkhoff_mean, long_mean
-from frictionlab.methods.shooting.long_motions import LongMotion, drifts, late_period, with_errors_of_maps
+from frictionlab.methods.shooting.long_motions import (
+    LongMotion,
+    drifts,
+    late_period,
+    means_of_attractors,
+    with_errors_of_maps,
+)
 
 RANDOM = np.random.default_rng(20261126)
 
@@ -148,6 +154,29 @@ def test_what_grows_or_dies_out_in_every_part_drifts():
     assert drifts(rising + wobble)
     assert drifts(-rising + wobble)
     assert not drifts(wobble)
+
+
+def test_a_motion_that_beats_too_slowly_to_tell_from_one_that_grows_shares_the_mean_of_another():
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    problem = PeriodicProblem(scene, fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), 1e-8)
+    start = Attractor(0, 0, 0.0, 0.0, None, problem.state_at(5.0, None)[None, :])
+    phases = 2.0 * math.pi * (math.sqrt(5.0) - 1.0) / 2.0 * np.arange(512)
+
+    def motion(around: float, phase: float, grows: float) -> LongMotion:
+        made = LongMotion(problem, scene, start)
+        made.means = around + np.sin(phases + phase)
+        made.sizes = 100.0 + np.sin(phases + phase) + grows * np.arange(512)
+        return made
+
+    steady, beating, other = motion(0.2, 0.0, 0.0), motion(0.2, 1.0, 0.1), motion(0.3, 2.0, 0.1)
+    assert steady.stays
+    assert not beating.stays
+    found = means_of_attractors({0: steady, 1: beating, 2: other})
+
+    assert found.keys() == {0, 1}
+    assert found[1] is found[0]
 
 
 def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():

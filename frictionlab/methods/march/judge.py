@@ -32,11 +32,14 @@ from frictionlab.methods.shooting.long_mean import DRIVEN, FREE, SHARED, LongMea
 from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.rest import resting_range, stays_at_rest
+from frictionlab.theory.rest import friction_at_rest, resting_range, stays_at_rest
 from frictionlab.theory.uniqueness import is_convergent
 
 READABLE = 4096
 """Most steps per period of the run that the columns besides the mean are read from."""
+LED_ELSEWHERE = (
+    "static friction above sliding friction: where steps lead such a motion has no known bound; use shooting"
+)
 
 
 @dataclass(frozen=True)
@@ -110,6 +113,9 @@ class MarchedPoint:
         unique = not problem and one_motion(arrivals)
         chosen = unique or self.scene.initial is not None
         if not problem and (long := self._long_mean(arrivals, chosen)) is not None:
+            if friction_at_rest(self.law) > self.law.sliding_friction(0.0):
+                self.reason = f"{describe(arrivals, 6)}; {LED_ELSEWHERE}"
+                return
             self._accept_long_mean(mean.runs, readable, long)
         elif (own := arrivals[0].period) > 0 and chosen:
             # Which lap's mean is meant makes so much of a difference.

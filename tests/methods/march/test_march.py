@@ -327,6 +327,17 @@ def test_a_belt_at_rest_that_can_hold_the_mass_needs_a_start():
     assert started.columns["mean_friction"][0] == pytest.approx(0.1, abs=1e-6)
 
 
+def test_where_friction_jumps_at_rest_a_motion_that_steps_keep_from_repeating_has_no_mean():
+    """1,024 and 2,048 steps agree on 3.79 within .04; the orbit of 13 periods has 3.2926, as 8,192 steps tell."""
+    law = Coulomb(mu=1.74261, mu_static=21.3972)
+    one = scene(
+        16.0, damping_ratio=0.1, normal_load=4.0 / 1.74261, drive=Drive(unbalance=10.0, frequency=1.5)
+    )
+    answers = solve(one, law, 1e-3)
+    assert answers.status == ["failed"]
+    assert "static friction above sliding friction" in answers.reason[0]
+
+
 def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     """Some starts come to an orbit of seven periods, or lag behind it for longer than they are followed."""
     law = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1.0, stribeck_exponent=1.0)

@@ -77,14 +77,12 @@ def _planned_lines(name: str, planned: Sequence[Planned], unit: ShownUnit | None
         lines.append(f"  {entry.law} by {entry.method}: points {about}{entry.points}, curves {entry.curves}")
         lines += [f"    {count} by {model}" for model, count in entry.models.items()]
         lines += [f"    {count} refused: {reason}" for reason, count in entry.refused.items()]
-        if entry.shapeless:
-            which = (
-                f"{entry.shapeless} of {entry.curves} curves lack" if entry.curves > 1 else "the curve lacks"
-            )
-            speeds = ", ".join(
-                f"{speed:g}" if unit is None else unit.text(speed) for speed in entry.add_belt_speeds
-            )
-            lines.append(f"    {which} points for a measure of shape; add belt speeds {speeds}")
+    for speeds in dict.fromkeys(tuple(entry.add_belt_speeds) for entry in planned if entry.shapeless):
+        lacking = [entry for entry in planned if entry.shapeless and tuple(entry.add_belt_speeds) == speeds]
+        whose = ", ".join(dict.fromkeys(entry.law for entry in lacking))
+        which = f"{sum(entry.shapeless for entry in lacking)} of {sum(entry.curves for entry in lacking)}"
+        told = ", ".join(f"{speed:g}" if unit is None else unit.text(speed) for speed in speeds)
+        lines.append(f"  {whose}: {which} curves lack points for a measure of shape; add belt speeds {told}")
     return lines
 
 

@@ -75,6 +75,14 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
     )
 
 
+def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether a curve of this scene has a known mean friction at vanishing belt speed."""
+    if not scene.is_harmonic or scene.belt_vibration is not None or scene.normal_load_variation is not None:
+        return not _start(scene, law)[1]
+    holds = law.memory_kind == "none" and scene.degrees_of_freedom > 0 and can_hold(scene, law)
+    return not holds or (scene.load_along_belt_only and law.monotone())
+
+
 def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
     """The mean friction at vanishing belt speed, or why it is not known; zero where both directions are alike."""
     remembers = law is not None and law.memory_kind != "none"

@@ -9,6 +9,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
+from frictionlab.results.loads_in_time import start_is_known
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.shape.interpolant import LEAST_POINTS, NO_SHARE, STEP, WIDEST_GAP
@@ -27,9 +28,16 @@ def speeds_to_add(curves: Iterable[tuple[Scenes, FrictionLaw]]) -> tuple[int, li
 
     Belt speeds in the units in which the scenes are given. The end of reversal is taken to be V_lin, as it is for
     laws of constant friction in one degree of freedom. Curves of one belt speed have no shape; those without V_lin
-    are left out.
+    are left out, and those to which no belt speed is sure to give one: of friction that changes with speed, and
+    without a known start.
     """
-    ends = [(_end(scenes.scene, law), scenes) for scenes, law in curves if len(np.unique(scenes.given)) > 1]
+    ends = [
+        (_end(scenes.scene, law), scenes)
+        for scenes, law in curves
+        if len(np.unique(scenes.given)) > 1
+        and law.constant_sliding_friction()
+        and start_is_known(scenes.scene, law)
+    ]
     lacking, added = 0, list[float]()
     for end, scenes in sorted(ends, key=lambda each: each[0]):
         if 0.0 < end < math.inf:

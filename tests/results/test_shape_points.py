@@ -69,6 +69,33 @@ def test_one_list_serves_the_curves_of_all_frequencies() -> None:
     assert speeds_to_add((Scenes(each.scene, np.array([*speeds, *more])), LAW) for each in scenes) == (0, [])
 
 
+SHAKEN = {
+    "drive": {"drive": {"amplitude": 1.0, "frequency": 1.5}},
+    "belt": {"belt_vibration": {"velocity_amplitude": 0.5, "frequency": 1.5}},
+}
+
+
+@pytest.mark.parametrize(("shaken", "static"), [("drive", 0.4), ("drive", 0.5), ("belt", 0.4)])
+def test_belt_speeds_are_advised_where_they_give_a_shape_and_nowhere_else(shaken: str, static: float) -> None:
+    scene, law = (
+        {"damping_ratio": 0.1, "normal_load": 4.0, **SHAKEN[shaken]},
+        {"mu": 0.4, "mu_static": static},
+    )
+    speeds = np.linspace(0.2, 3.0, 6)
+    _, more = speeds_to_add([(Scenes(fl.Scene(belt_speed=1.0, **scene), speeds), fl.Coulomb(**law))])
+    asked = more or lacking_speeds(speeds, 0.5)
+    study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", **law}], "columns": ["shape"]}
+    found = fl.run(study | {"sweep": {"scene.belt_speed": [*speeds, *asked]}}).curves
+
+    assert bool(more) == bool(found["shape"].notna().all())
+    assert bool(more) == (shaken == "drive" and static == 0.4)
+
+
+def test_friction_that_falls_with_speed_may_have_no_end_of_reversal() -> None:
+    law = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4)
+    assert speeds_to_add([(Scenes(SCENE, np.array([5.0, 10.0])), law)]) == (0, [])
+
+
 def test_points_undriven_bodies_and_single_speeds_have_no_shape_to_lack() -> None:
     undriven = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=0.5)
 

@@ -70,7 +70,7 @@ ARROWS = {
         "results": "columns laws methods.base orbit quantities registry scene shape study printable theory units",
         "runner": (
             "columns compile faults laws methods.base methods.under_way mistakes onsets orbit printable "
-            "quantities registry results scene study theory"
+            "quantities registry results scene study theory units"
         ),
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
         "charts": "columns printable study units",

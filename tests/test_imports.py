@@ -15,6 +15,7 @@ import pytest
 
 import frictionlab
 from frictionlab import registry
+from frictionlab.methods.base import REDUCED_MODELS, ReducedModel
 
 HOUSE = Path(frictionlab.__file__).parent
 PROJECT = HOUSE.parent
@@ -307,7 +308,9 @@ def test_every_law_and_method_behind_an_entry_point_loads_under_its_own_name() -
         written = {"dupont": "elasto-plastic"}.get(name, name).replace("-", "")
         assert registry.law_class(name).__name__.lower() == written
     for name in registry.method_names():
-        assert registry.method_class(name)().name == name
+        method = registry.method_class(name)
+        assert method().name == name
+        assert issubclass(method, ReducedModel) == (name in REDUCED_MODELS)
 
 
 WRITTEN = [

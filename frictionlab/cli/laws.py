@@ -14,6 +14,7 @@ from frictionlab.cli.output import BROKEN_PLUGIN, FAILED, OK, print_message, pri
 if TYPE_CHECKING:
     from frictionlab.registry import Laws
     from frictionlab.testing import Report
+    from frictionlab.testing.outcome import Outcome
 
 
 @click.command("laws")
@@ -107,12 +108,14 @@ def _tested(name: str, law: Any, given: TestOptions) -> Report:
     apart = given.as_json or given.markdown
     say = print_message if apart else print_result
     say(heading(name))
-    report = check_law(
-        law,
-        examples=given.examples or EXAMPLES,
-        on_failure="return",
-        tell=lambda one: say(one.line(remark="" if apart else one.remark)),
-    )
+
+    def tell(one: Outcome) -> None:
+        if one.result != "skipped":
+            say(one.line(remark="" if apart else one.remark))
+
+    report = check_law(law, examples=given.examples or EXAMPLES, on_failure="return", tell=tell)
+    for line in report.skips():
+        say(line)
     say(report.summary(name))
     if given.markdown:
         print_result(f"{report.markdown(name)}\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,11 +56,9 @@ def needs_command(
     asked = load_study(study, overrides, law_files, plugins)
     if out is not None:
         _make(out)
-    found = []
-    for each in needs_of_study(asked, within):
-        found.append(each)
-        if not as_json:
-            print_result("\n".join(_lines(each)))
+    found = list(needs_of_study(asked, within))
+    if not as_json:
+        print_result("\n".join(_lines(found)))
     if out is not None:
         _write(pd.concat([each.table for each in found], ignore_index=True), asked.title or study.stem, out)
     if as_json:
@@ -67,10 +66,29 @@ def needs_command(
     return FAILED if any(each.failed for each in found) else OK
 
 
-def _lines(found: Needs) -> list[str]:
-    """The sentences of a curve, below what tells it from the others."""
-    head = [f"{found.label}:"] if found.label else []
-    return [*head, *(f"{'  ' if head else ''}{line}" for line in found.sentences)]
+def _lines(found: Sequence[Needs]) -> list[str]:
+    """What holds for every curve, but for its numbers, then what is left of each below what tells it apart."""
+    from frictionlab.results.summary import alike
+
+    if len(found) == 1:
+        return found[0].sentences
+    said = [{_form(line): line for line in each.sentences} for each in found]
+    shared = [form for form in said[0] if all(form in each for each in said)]
+    lines = (
+        ["every curve:", *(f"  {alike(each[form] for each in said)}" for form in shared)] if shared else []
+    )
+    for each, own in zip(found, said, strict=True):
+        rest = [f"  {line}" for form, line in own.items() if form not in shared]
+        lines += [f"{each.label}:", *rest] if rest else []
+    return lines
+
+
+def _form(line: str) -> tuple[str, str]:
+    """A sentence with what it is about, and the rest of it without its numbers."""
+    from frictionlab.results.summary import pattern
+
+    what, _, rest = line.partition(":")
+    return what, pattern(rest)
 
 
 def _make(out: Path) -> None:

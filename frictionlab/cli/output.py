@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 import json
 import os
+import shutil
 import sys
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TextIO
@@ -119,10 +121,20 @@ def print_result(text: str) -> None:
     """A result, on stdout; a reader that closed the pipe is no error."""
     _erase_progress()
     try:
-        click.echo(printable(text), _results())
+        click.echo(_wrapped(printable(text)), _results())
         _results().flush()
     except BrokenPipeError:
         discard_stdout()
+
+
+def _wrapped(text: str) -> str:
+    """The text with its lines broken between words where a terminal would break them anywhere."""
+    if not _results().isatty():
+        return text
+    width = shutil.get_terminal_size().columns
+    ways: dict[str, Any] = {"replace_whitespace": False, "break_long_words": False, "break_on_hyphens": False}
+    lines = (textwrap.fill(line, width, subsequent_indent="    ", **ways) for line in text.split("\n"))
+    return "\n".join(lines)
 
 
 def print_records(records: list[dict[str, Any]]) -> None:

@@ -145,6 +145,10 @@ class Method(Record, ABC):
         return []
 
 
+REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})
+"""The names of those that solve a simpler problem, known without loading them."""
+
+
 class ReducedModel(Method):
     """A method that solves a simpler problem than the scene states.
 

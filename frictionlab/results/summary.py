@@ -36,12 +36,16 @@ def each_once(column: pd.Series, told: Callable[[Any], str]) -> pd.Series:
 
 
 def alike(sentences: Iterable[str]) -> str:
-    """The first of sentences that differ in their numbers at most, and how many others there are."""
+    """Sentences that differ in their numbers at most as one: the least and the greatest of each number."""
     first, *others = dict.fromkeys(sentences)
-    return f"{first} (and {len(others)} more that differ in the numbers)" if others else first
+    values = zip(*(_NUMBER.findall(each) for each in (first, *others)), strict=False)
+    ends = iter([" to ".join(dict.fromkeys((min(one, key=float), max(one, key=float)))) for one in values])
+    return _NUMBER.sub(lambda found: next(ends, found[0]), first)
 
 
 MOST_REASONS = 10
+CURVES_TOLD = 20
+"""Curves of a run that are told line by line."""
 
 
 def summary(run: Run) -> str:
@@ -52,7 +56,7 @@ def summary(run: Run) -> str:
         [run.study.title] if run.study.title else [],
         [f"{counted(run.size, 'point')}: {told}"],
         [f"of {counted(len(table), 'point')} spread over them:"] if run.shown is not None else [],
-        ["", *columns([_HEAD, *_curve_lines(table)])],
+        ["", *_curve_lines(table)],
         _model_lines(table),
         _reasons(table),
         verdict_lines(run.verdicts),
@@ -64,17 +68,19 @@ def summary(run: Run) -> str:
 _HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "model")
 
 
-def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
-    """One line per curve: everything equal but belt speed."""
+def _curve_lines(table: pd.DataFrame) -> list[str]:
+    """One line per curve: everything equal but belt speed; of many the first ones."""
     keys = ["law", "method", *swept_inputs(table)]
     groups = table.groupby(keys, sort=False, dropna=False)
     models = _models(table)
     read = {name: table[name].to_numpy() for name in ("mean_friction", "error", "status", "model")}
     found = sorted(groups.indices.items(), key=lambda one: int(one[1].min()))
-    return [
+    lines = [
         _curve_line(dict(zip(keys, key, strict=True)), {name: read[name][at] for name in read}, models)
-        for key, at in found
+        for key, at in found[:CURVES_TOLD]
     ]
+    left = len(found) - len(lines)
+    return [*columns([_HEAD, *lines]), *([f"... and {counted(left, 'more curve')}"] if left else [])]
 
 
 def _models(table: pd.DataFrame) -> dict[str, int]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Method, ReducedModel
+from frictionlab.methods.base import REDUCED_MODELS, Method
 from frictionlab.mistakes.notes import number_text
 from frictionlab.quantities import Written
 from frictionlab.scene.waveforms import Form
@@ -90,7 +90,7 @@ class MethodChoice:
     @property
     def is_reduced(self) -> bool:
         """Whether it solves a simpler model: its errors are then the distance to the full answers."""
-        return isinstance(self.method, ReducedModel)
+        return self.name in REDUCED_MODELS
 
     @property
     def in_words(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
@@ -64,6 +65,12 @@ class Report:
     def count(self, result: Result) -> int:
         """The number of checks with this result."""
         return sum(outcome.result == result for outcome in self.outcomes)
+
+    def skips(self) -> list[str]:
+        """A line on what does not apply, reason by reason; none where everything ran."""
+        reasons = Counter(outcome.reason for outcome in self.outcomes if outcome.result == "skipped")
+        told = "; ".join(f"{count} {reason}" for reason, count in reasons.most_common())
+        return [f"checks that do not apply: {told}"] if told else []
 
     def records(self) -> list[dict[str, Any]]:
         """One record a check, the class of the law first."""

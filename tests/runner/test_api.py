@@ -551,6 +551,14 @@ def test_a_failed_steady_state_is_an_answer_too(trouble: Trouble) -> None:
     assert (state.status, state.reason) == ("failed", "internal error: TypeError: no such operand")
 
 
+def test_of_many_curves_the_first_have_a_line_each() -> None:
+    many = {"scene.belt_speed": [4, 13], "scene.drive.frequency": [float(place) for place in range(1, 26)]}
+    lines = summary(fl.run(study(methods=["fake"], sweep=many))).splitlines()
+
+    assert sum(line.startswith("coulomb  ") for line in lines) == 20
+    assert "... and 5 more curves" in lines
+
+
 def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> None:
     done = fl.run(study(methods=["fake"]))
     models = [f"closed form: belt speed >= {speed}" for speed in range(len(done.table))]
@@ -558,7 +566,7 @@ def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> No
     lines = summary(done).splitlines()
 
     assert [line for line in lines if line.startswith("model")] == [
-        f"model 1: closed form: belt speed >= 0 (and {len(models) - 2} more that differ in the numbers)",
+        f"model 1: closed form: belt speed >= 0 to {len(models) - 2}",
         "model 2: another",
     ]
     assert any(line.endswith(" 1, 2") for line in lines)

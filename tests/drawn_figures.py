@@ -43,7 +43,16 @@ def curves_of(axes: Axes) -> list[Curve]:
 
 def names_above(axes: Axes) -> dict[float, str]:
     """What is named above a picture, by its place on the axis."""
-    return {text.xy[0]: text.get_text() for text in axes.texts if isinstance(text, Annotation)}
+    notes = [text for text in axes.texts if isinstance(text, Annotation) and text.arrow_patch is None]
+    return {text.xy[0]: text.get_text() for text in notes}
+
+
+def names_of(figure: Figure) -> list[str]:
+    """Of its curves, at the ends of those of the first picture or in the legend."""
+    notes = [
+        text for text in figure.axes[0].texts if isinstance(text, Annotation) and text.arrow_patch is not None
+    ]
+    return [text.get_text() for text in notes] or legend_of(figure)
 
 
 def _data(line: Any) -> Curve:

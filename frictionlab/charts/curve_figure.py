@@ -6,7 +6,8 @@ curves are one line are drawn once, and the legend says so.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,21 +22,29 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
+from frictionlab.charts.closer_view import draw_closer_view
 from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, CurveNumbers, Family, drawn_once
-from frictionlab.charts.looks import WITHOUT_NUMBER, Looks, curve_entries, status_entries
+from frictionlab.charts.end_labels import CurveEnd, draw_end_labels, ends_fit
+from frictionlab.charts.looks import (
+    LEGEND_MARKS,
+    WITHOUT_NUMBER,
+    Looks,
+    curve_entries,
+    status_entries,
+    told_of,
+)
 from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, scale_alike, write_heading
-from frictionlab.charts.sweeps import SweptValue, is_logarithmic
+from frictionlab.charts.sweeps import SweptValue, headings, is_logarithmic
 from frictionlab.columns import unit_shown, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
+LEAST_SHARE = 1e-3  # of the largest number of a curve on a logarithmic axis
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LIKE_RANGES = 2.5  # ranges of pictures of one quantity that differ by less have one scale
-LEVEL_SHARE = 0.4  # of a linear axis, up to its right end: with less of it level there is no closer view
-DIFFER_MOST = 0.3  # of the largest difference: from there on curves are shown closer
-GAP, LABELS = 0.07, 0.04  # to the level part around, and for labels of the view, in shares of the picture
-Points = tuple[CurveNumbers, CurveNumbers]
+
+Panel = tuple[SweptValue, ...]
 BAND_LOOK: Any = {"linewidth": 6.0, "alpha": 0.3, "solid_capstyle": "butt"}  # where the body sticks
 
 
@@ -59,19 +68,60 @@ class CurveFigure:
         """Those of the curves that are drawn."""
         return Looks(drawn_once(self.family.curves, self.columns))
 
+    @cached_property
+    def logarithmic(self) -> tuple[bool, bool]:
+        """Whether the axes of all pictures are logarithmic, along and upwards: a figure has one kind of axis."""
+        curves = self.looks.curves
+        along = is_logarithmic(np.concatenate([curve.column(self.family.abscissa) for curve in curves]))
+        pictures = [
+            [curve.rows[column] for curve in curves if curve.panel == panel]
+            for panel in self.family.panels
+            for column in self.columns
+        ]
+        apart = "mean_friction" not in self.columns and any(map(_lie_decades_apart, pictures))
+        return along, apart and all(map(_is_positive, itertools.chain(*pictures)))
+
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """The figure, with matplotlib's settings as they are."""
         pictures = [(panel, column) for panel in self.family.panels for column in self.columns]
-        about = self.family.word(self.family.member) if self.family.member else None
-        sheet = Sheet.blank(len(pictures), heading, self._entries(), about)
+        sheet = Sheet.blank(len(pictures), heading)
+        titles = headings([panel for panel, _ in pictures])
         drawn = [
-            _Picture(self, panel, column, sheet.axes(place)).draw(sheet.picture_width)
-            for place, (panel, column) in enumerate(pictures)
+            _Picture(self, panel, column, sheet.axes(place)).draw(sheet.picture_width, title)
+            for place, ((panel, column), title) in enumerate(zip(pictures, titles, strict=True))
         ]
         for column in range(len(self.columns)):
             scale_alike(drawn[column :: len(self.columns)], LIKE_RANGES)
         sheet.label_once(drawn)
+        self._name_curves(sheet, pictures, drawn)
         return sheet.figure
+
+    def _name_curves(
+        self, sheet: Sheet, pictures: Sequence[tuple[Panel, str]], drawn: Sequence[Axes]
+    ) -> None:
+        """At their ends where they fit in every picture, else in a legend, below which is all else."""
+        named, about = curve_entries(self.looks, self.columns), None
+        what = self.family.word(self.family.member) if self.family.member else None
+        ends = [self._ends(panel, column) for panel, column in pictures]
+        if named and all(ends_fit(*each, sheet.picture_width) for each in zip(drawn, ends, strict=True)):
+            for axes, found in zip(drawn, ends, strict=True):
+                draw_end_labels(axes, found)
+            named = (
+                [Line2D([], [], linestyle="none", label=f"at the end of each line: {what}")] if what else []
+            )
+        elif not any(entry.get_linestyle() == "None" for entry in named):  # which tell what is swept
+            about = what
+        sheet.add_legend([*named, *self._entries()], about)
+
+    def _ends(self, panel: Panel, column: str) -> list[CurveEnd]:
+        """Those of the curves of a picture."""
+        found = []
+        for curve in (each for each in self.looks.curves if each.panel == panel):
+            x, y = curve.column(self.family.abscissa), curve.column(column)
+            if (known := np.flatnonzero(np.isfinite(y))).size and np.isfinite(x).all():
+                name = told_of(self.looks, curve)
+                found.append(CurveEnd(x[known[-1]], y[known[-1]], name, self.looks.color(curve)))
+        return found
 
     def onsets_of(self, curve: CurveData) -> list[OnsetMark]:
         """The marks on the axis under a curve."""
@@ -80,7 +130,7 @@ class CurveFigure:
     def _entries(self) -> list[Line2D]:
         marks = [mark for curve in self.family.curves for mark in self.onsets_of(curve)]
         rows = pd.concat([curve.rows[["method", "status"]] for curve in self.family.curves])
-        entries = [*curve_entries(self.looks, self.columns), *status_entries(rows), *onset_entries(marks)]
+        entries = [*status_entries(rows), *onset_entries(marks)]
         if self.options.stick and any(_sticks(curve).any() for curve in self.looks.curves):
             entries.append(Line2D([], [], color="0.3", label="stick in part of the period", **BAND_LOOK))
         return [*entries, *self.more]
@@ -97,11 +147,11 @@ class _Picture:
     """One quantity of the curves of one panel."""
 
     of: CurveFigure
-    panel: tuple[SweptValue, ...]
+    panel: Panel
     column: str
     axes: Axes
 
-    def draw(self, width: float) -> Axes:
+    def draw(self, width: float, title: str) -> Axes:
         """The picture. width: about [point]."""
         axes, abscissa = self.axes, self.of.family.abscissa
         curves = [curve for curve in self.of.looks.curves if curve.panel == self.panel]
@@ -114,18 +164,18 @@ class _Picture:
         axes.margins(x=0.02)
         if unit_shown(abscissa) == "deg":
             axes.xaxis.set_major_locator(MaxNLocator(steps=DEGREES))
-        if is_logarithmic(np.concatenate([curve.column(abscissa) for curve in curves])):
+        if self.of.logarithmic[0]:
             axes.set_xscale("log")
             _label_decades(axes.xaxis)
-        self._scale_upwards(curves)
+        self._scale_upwards()
         room = draw_speed_marks(axes, curves, self.of.looks, width) if self.of.family.along_speed else 0.0
         pad = mpl.rcParams["axes.titlepad"] + room
-        write_heading(axes, ", ".join(each.sentence for each in self.panel), width, pad)
+        write_heading(axes, title, width, pad)
         for curve in curves:
             draw_onsets(axes, self.of.onsets_of(curve), self.of.looks.color(curve))
         if self.of.options.inset and self.column == "mean_friction":
             drawn = [(curve.column(abscissa), curve.column(self.column)) for curve in curves]
-            _draw_closer_view(axes, drawn, lambda inside: self.lines(inside, curves))
+            draw_closer_view(axes, drawn, lambda inside: self.lines(inside, curves))
         return axes
 
     def lines(self, axes: Axes, curves: Sequence[CurveData]) -> None:
@@ -142,7 +192,8 @@ class _Picture:
             across = axes.get_yaxis_transform()
             axes.plot([0.0, 0.5, 1.0], y[[0, 0, 0]], markevery=[1], transform=across, **look)
             return
-        axes.plot(x, y, markevery=self.of.looks.marked(y, curve), **look)
+        drawn = _with_kinks(x, y, curve.kinks if self.column == "mean_friction" and not self.of.level else ())
+        axes.plot(*drawn, markevery=self.of.looks.marked(drawn[1], curve), **look)
         if self.column == "mean_friction":
             _draw_errors(axes, curve, x, look["color"])
         held = _sticks(curve) if self.of.options.stick else np.zeros(len(x), bool)
@@ -155,22 +206,41 @@ class _Picture:
         x = curve.column(self.of.family.abscissa)
         if curve.having("refused").all() or np.isnan(x).all():
             return
-        look: Any = {"ms": 4, "clip_on": False, "transform": self.axes.get_xaxis_transform(), "zorder": 5}
-        for status, mark in WITHOUT_NUMBER.items():
+        look: Any = {
+            "ms": 4,
+            "ls": "none",
+            "clip_on": False,
+            "transform": self.axes.get_xaxis_transform(),
+            "zorder": 5,
+        }
+        marks = WITHOUT_NUMBER if self.column == "mean_friction" else LEGEND_MARKS
+        for status, mark in marks.items():
             if len(at := x[curve.having(status)]):
-                self.axes.plot(at, 0.0 * at, mark, color=self.of.looks.color(curve), **look)
+                self.axes.plot(at, 0.0 * at, marker=mark, color=self.of.looks.color(curve), **look)
 
-    def _scale_upwards(self, curves: Sequence[CurveData]) -> None:
+    def _scale_upwards(self) -> None:
         """A foot at zero for what is not negative; logarithmic where whole curves lie decades apart."""
-        if self.column != "mean_friction" and _lie_decades_apart(
-            [curve.rows[self.column] for curve in curves]
-        ):
+        if self.of.logarithmic[1]:
             self.axes.set_yscale("log")
             _label_decades(self.axes.yaxis)
             return
         low, high = self.axes.get_ylim()
         if -0.06 * high < low:  # nothing but the margin below zero, so zero itself is the natural foot
             self.axes.set_ylim(0.0, max(high, 1.05 * self.axes.dataLim.y1))
+
+
+def _with_kinks(
+    x: CurveNumbers, y: CurveNumbers, kinks: Sequence[float]
+) -> tuple[CurveNumbers, CurveNumbers]:
+    """The points of a curve and, at V_lin, that of the next one beyond: from there on mean friction is the same."""
+    for kink in kinks:
+        beyond = x >= kink if kink > 0.0 else x <= kink
+        places = np.flatnonzero(beyond & np.isfinite(y))
+        if places.size and kink not in x:
+            level = y[places[0] if kink > 0.0 else places[-1]]
+            at = int(np.searchsorted(x, kink))
+            x, y = np.insert(x, at, kink), np.insert(y, at, level)
+    return x, y
 
 
 def _draw_errors(axes: Axes, curve: CurveData, x: CurveNumbers, color: Any) -> None:
@@ -193,6 +263,11 @@ def _label_decades(axis: Axis) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
+def _is_positive(curve: pd.Series) -> bool:
+    """Whether a curve keeps to what a logarithmic axis shows well; one without numbers does."""
+    return bool(curve.isna().all() or curve.min() > LEAST_SHARE * curve.max())
+
+
 def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
     """Whether every curve keeps to a level above rounding, and the levels are decades apart."""
     known = [curve for curve in curves if curve.notna().any()]
@@ -201,59 +276,3 @@ def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
     levels = [float(curve.median()) for curve in known]
     low, high = min(levels), max(levels)
     return high > 30.0 * low > ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low
-
-
-def _draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes], None]) -> None:
-    """Draw the lines anew where they differ, or where they change, in the room under or over their level part.
-
-    Nothing is drawn where less than LEVEL_SHARE of a linear axis, up to its right end, is level.
-    """
-    finite = [np.isfinite(x) & np.isfinite(y) for x, y in curves]
-    curves = [(x[known], y[known]) for (x, y), known in zip(curves, finite, strict=True)]
-    window = _level_from(curves)
-    if window is None or axes.get_xscale() != "linear" or axes.get_yscale() != "linear":
-        return
-    start, level = window
-    ends = axes.transData.transform([(start, level), (axes.get_xlim()[1], axes.get_ylim()[1])])
-    (left, bottom), (right, _) = axes.transAxes.inverted().transform(ends)
-    foot, top = (0.1, bottom - GAP) if bottom > 0.5 else (bottom + GAP, 0.95)
-    if top - foot < 0.25:
-        return
-    first = left + GAP + LABELS
-    inside = axes.inset_axes((first, foot + GAP, right - first - 0.5 * GAP, top - foot - GAP))
-    draw(inside)
-    low, high = _of_interest(curves, start)
-    heights = np.concatenate([y[(x >= low) & (x <= high)] for x, y in curves])
-    margin = 0.08 * float(np.ptp(heights))
-    inside.set_xlim(low, high)
-    inside.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
-    inside.tick_params(labelsize=5.5, length=2)
-    axes.indicate_inset_zoom(inside, edgecolor="0.45", linewidth=0.5)
-
-
-def _level_from(curves: Sequence[Points]) -> tuple[float, float] | None:
-    """From where on, and at which level, all curves stay within what can be seen; None for less than LEVEL_SHARE."""
-    known = [(x, y) for x, y in curves if len(x) > 2]
-    if not known:
-        return None
-    least = LEAST_VISIBLE * float(np.ptp(np.concatenate([y for _, y in known])))
-    changes = [np.append(True, np.abs(y - y[-1]) > least) for _, y in known]
-    start = max(float(x[np.flatnonzero(each)[-1] - 1]) for (x, _), each in zip(known, changes, strict=True))
-    low, high = min(float(x[0]) for x, _ in known), max(float(x[-1]) for x, _ in known)
-    levels = [float(y[-1]) for _, y in known]
-    if np.ptp(levels) > least or not low < start <= high - LEVEL_SHARE * (high - low):
-        return None
-    return start, levels[0]
-
-
-def _of_interest(curves: Sequence[Points], start: float) -> tuple[float, float]:
-    """The part before the level one in which several curves differ most; all of it where they do not, or for one."""
-    first = min(float(x[0]) for x, _ in curves)
-    at = np.linspace(first, start, 400)
-    heights = np.array([np.interp(at, x, y) for x, y in curves])
-    apart = np.ptp(heights, axis=0)
-    if apart.max() <= 2.0 * LEAST_VISIBLE * float(np.ptp(heights)):
-        return first, start
-    apart = apart > DIFFER_MOST * apart.max()
-    margin = 0.1 * (start - first)
-    return max(first, float(at[apart][0]) - margin), min(start, float(at[apart][-1])) + margin

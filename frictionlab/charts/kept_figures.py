@@ -22,7 +22,7 @@ from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import MOST_PICTURES, CurveData, CurveNumbers, Family, family_by
 from frictionlab.charts.looks import Looks, curve_entries
 from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike, write_heading
-from frictionlab.charts.sweeps import SweptValue, some_of, sweep_of
+from frictionlab.charts.sweeps import SweptValue, headings, some_of, sweep_of
 from frictionlab.columns import (
     ALSO_IN_SI,
     BELT_SPEEDS,
@@ -130,11 +130,10 @@ def _draw(
         entries.append(Line2D([], [], label="start of a drive period", **look))
         entries.append(Line2D([], [], label="belt speed", **SPEED_LINE))
     sheet = Sheet.blank(len(pictures), heading, entries + part_told(len(points), total, "points"))
-    looks = _looks(every)
-    drawn = [
-        _draw_point(sheet.axes(at), *picture, looks, sheet.picture_width)
-        for at, picture in enumerate(pictures)
-    ]
+    looks, titles = _looks(every), headings([point.settings for point, _ in pictures])
+    drawn = [_draw_point(sheet.axes(at), *picture, looks) for at, picture in enumerate(pictures)]
+    for axes, title in zip(drawn, titles, strict=True):
+        write_heading(axes, title, sheet.picture_width)
     # one scale for friction: that which is constant but for rounding is a level line on it
     scale_alike([axes for axes, (_, kind) in zip(drawn, pictures, strict=True) if kind[1] == "friction"])
     sheet.label_once(drawn)
@@ -199,8 +198,8 @@ def _closed(inside: pd.DataFrame, row: pd.Series) -> pd.DataFrame:
     return pd.concat([inside, again], ignore_index=True)
 
 
-def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: Looks, width: float) -> Axes:
-    """The orbits of a point as a picture. width: about [point]."""
+def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: Looks) -> Axes:
+    """The orbits of a point as a picture."""
     along, upwards = kind
     for loop in point.loops:
         x, y, label = loop.column(loop.shown(along)), loop.column(loop.shown(upwards)), loop.label(along)
@@ -215,7 +214,6 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
     if kind == PHASE:
         row = point.loops[0].row
         axes.axhline(float(row[belt_speed(row.index)]), zorder=0, **SPEED_LINE)
-    write_heading(axes, ", ".join(setting.sentence for setting in point.settings), width)
     return axes
 
 

@@ -23,6 +23,7 @@ from frictionlab.charts.curves import CurveData
 from frictionlab.charts.style import CYCLE
 from frictionlab.charts.sweeps import BESIDE, LONGEST_LABEL, shortened, some_of
 
+MOST_BY_DASHES = 4  # methods that colour and dashes tell apart, without markers
 MARKERS = "os^Dvph<>d"
 MOST_VALUES_IN_LEGEND = 8
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
@@ -51,7 +52,7 @@ class Looks:
         sign = member + members * method if self._methods_have_markers else member
         return {
             "color": self.color(curve),
-            "linestyle": self._cycle(curve)["linestyle"],
+            "linestyle": self.cycle(curve)["linestyle"],
             "linewidth": (1.1 if members <= MOST_VALUES_IN_LEGEND else 0.6) + broader,
             "marker": MARKERS[sign % len(MARKERS)],
             "markeredgecolor": "white",
@@ -60,12 +61,15 @@ class Looks:
 
     def color(self, curve: CurveData) -> tuple[float, float, float]:
         """The colour of what sets it, from dark to light along a swept number."""
-        members, color = self.sizes[1], self._cycle(curve)["color"]
-        if members == 1 or self._words:
-            return to_rgb(color)
-        return with_contrast(color, DARKEST * (PALEST / DARKEST) ** (curve.place[1] / (members - 1)))
+        color = self.cycle(curve)["color"]
+        return to_rgb(color) if self.sizes[1] == 1 or self._words else self.shade(color, curve.place[1])
 
-    def _cycle(self, curve: CurveData) -> dict[str, Any]:
+    def shade(self, color: str, member: int) -> tuple[float, float, float]:
+        """The colour for the swept value at this place, from dark to light."""
+        return with_contrast(color, DARKEST * (PALEST / DARKEST) ** (member / max(1, self.sizes[1] - 1)))
+
+    def cycle(self, curve: CurveData) -> dict[str, Any]:
+        """Colour and dashes of what sets them."""
         law, member, method = curve.place
         place = law if self.sizes[0] > 1 else member if self._words else method
         return CYCLE[place % len(CYCLE)]
@@ -104,10 +108,15 @@ class Looks:
         return any(curve.member is not None and isinstance(curve.member.value, str) for curve in self.curves)
 
     @property
+    def words_or_signs(self) -> bool:
+        """Whether a swept value has no shade or no marker of its own."""
+        return self._words or self._methods_have_markers
+
+    @property
     def _methods_have_markers(self) -> bool:
         """Whether neither colour and dashes tell methods apart, or they are many."""
         laws, _, methods = self.sizes
-        return methods > 2 or (methods > 1 and (laws > 1 or self._words))
+        return methods > MOST_BY_DASHES or (methods > 1 and (laws > 1 or self._words))
 
     @property
     def _has_signs(self) -> bool:
@@ -125,21 +134,52 @@ def curve_entries(looks: Looks, columns: Sequence[str]) -> list[Line2D]:
             _, methods = labels.setdefault(curve.place, (curve, [curve.method]))
             methods += [name for name in curve.same if name not in methods]
     several = looks.sizes[2] > 1 or any(len(methods) > 1 for _, methods in labels.values())
+    if shorter := _apart(looks, [curve for _, (curve, _) in sorted(labels.items())]):
+        return shorter
     return [
-        Line2D([], [], label=_label(looks, curve, methods if several else []), **looks.sample(curve))
+        Line2D([], [], label=curve_name(looks, curve, methods if several else []), **looks.sample(curve))
         for _, (curve, methods) in sorted(labels.items())
     ]
 
 
-def _label(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
-    several_laws = looks.sizes[0] > 1
-    room = BESIDE if several_laws and methods else LONGEST_LABEL
-    told = [shortened(curve.law, room)] if several_laws else []
-    if methods:
-        told.append(joined_methods(methods, room))
+def _apart(looks: Looks, curves: Sequence[CurveData]) -> list[Line2D]:
+    """Laws and methods on the one hand, swept values on the other; nothing where that is not shorter."""
+    lines = {(curve.law, curve.method, curve.same): curve for curve in curves}
+    valued = [curve for curve in curves if curve.member is not None and curve.member.value is not None]
+    values = {curve.place[1]: curve for curve in valued}
+    if looks.words_or_signs or len(lines) + len(values) >= len(curves):
+        return []
+    entries = []
+    for curve in lines.values():
+        look = looks.line(curve) | {"marker": "", "color": looks.cycle(curve)["color"]}
+        methods = (curve.method, *curve.same) if looks.sizes[2] > 1 or curve.same else ()
+        entries.append(Line2D([], [], label=", ".join(_names(looks, curve, methods)), **look))
+    for at, (place, curve) in enumerate(sorted(values.items())):
+        assert curve.member is not None
+        look = looks.line(curve) | {"linestyle": "none", "color": looks.shade("0.5", place)}
+        entries.append(Line2D([], [], label=curve.member.text if at else curve.member.sentence, **look))
+    return entries
+
+
+def told_of(looks: Looks, curve: CurveData) -> str:
+    """What a curve is called at its end."""
+    methods = (curve.method, *curve.same) if looks.sizes[2] > 1 or curve.same else ()
+    return curve_name(looks, curve, methods)
+
+
+def curve_name(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
+    """The names of what tells a curve from the others: law, methods, swept value."""
+    told = _names(looks, curve, methods)
     if curve.member is not None and curve.member.value is not None:
         told.append(curve.member.brief if told else curve.member.text)
     return ", ".join(told)
+
+
+def _names(looks: Looks, curve: CurveData, methods: Sequence[str]) -> list[str]:
+    several_laws = looks.sizes[0] > 1
+    room = BESIDE if several_laws and methods else LONGEST_LABEL
+    told = [shortened(curve.law, room)] if several_laws else []
+    return [*told, joined_methods(methods, room)] if methods else told
 
 
 def joined_methods(methods: Sequence[str], room: int = BESIDE) -> str:

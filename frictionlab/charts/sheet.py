@@ -57,9 +57,15 @@ class Sheet(NamedTuple):
         double = heading.width == "double" or (heading.width is None and wide == 2)
         high = -(-pictures // wide)
         figure = blank_figure(PAGE if double else COLUMN, high * height)
-        lines = write_title(figure, heading) + _add_legend(figure, entries, about)
-        figure.set_figheight(high * height + LINE * lines)
-        return cls(figure, high, wide)
+        figure.set_figheight(high * height + LINE * write_title(figure, heading))
+        sheet = cls(figure, high, wide)
+        sheet.add_legend(entries, about)
+        return sheet
+
+    def add_legend(self, entries: Sequence[Any], about: str | None = None) -> None:
+        """Below the pictures, with room of its own."""
+        lines = _add_legend(self.figure, entries, about)
+        self.figure.set_figheight(self.figure.get_figheight() + LINE * lines)
 
     def axes(self, place: int) -> Axes:
         """Those of the picture at this place, from 0, row by row."""

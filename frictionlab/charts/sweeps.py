@@ -40,6 +40,8 @@ class SweptValue(NamedTuple):
     @property
     def brief(self) -> str:
         """Its symbol with the value, a word alone."""
+        if self.value is None:
+            return f"no {symbol(self.name)}"
         return self.text if isinstance(self.value, str) else f"{symbol(self.name)} = {self.text}"
 
     @property
@@ -48,6 +50,16 @@ class SweptValue(NamedTuple):
         if self.name == "law":
             return self.text
         return f"no {quantity(self.name)}" if self.value is None else f"{quantity(self.name)} = {self.text}"
+
+
+def headings(pictures: Sequence[Sequence[SweptValue]]) -> list[str]:
+    """What is the same in each picture: every name in words once, then as its symbol."""
+    told: set[str] = set()
+    found = []
+    for values in pictures:
+        found.append(", ".join(each.brief if each.name in told else each.sentence for each in values))
+        told |= {each.name for each in values}
+    return found
 
 
 class Sweep(NamedTuple):
@@ -88,8 +100,9 @@ def swept_columns(table: pd.DataFrame) -> list[str]:
 def linked_words(
     table: pd.DataFrame, name: str, swept: Sequence[str], told: Callable[[str], str] = word
 ) -> str:
-    """An input in words, with those of the scene that change together with it."""
-    return ", with ".join(map(told, (name, *linked_with(table, name, swept))))
+    """An input in words, with the symbols of those of the scene that change together with it."""
+    others = [symbol(each) for each in linked_with(table, name, swept)]
+    return f"{told(name)}, with {' and '.join(others)}" if others else told(name)
 
 
 def linked_with(table: pd.DataFrame, name: str, swept: Sequence[str]) -> list[str]:

@@ -11,7 +11,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
-from drawn_figures import curves_of, legend_of, names_above, titles_of
+from drawn_figures import curves_of, legend_of, names_above, names_of, titles_of
 from matplotlib import style as styles
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -20,6 +20,7 @@ from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 from frictionlab.charts import figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
+from frictionlab.charts.end_labels import moved_apart
 from frictionlab.charts.figures import FIGURES, FigureData, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
 from frictionlab.charts.sheet import Heading
@@ -131,7 +132,7 @@ def test_methods_whose_curves_are_one_line_are_drawn_once(resonance: pd.DataFram
     figure = _figure(table)
 
     assert len(curves_of(figure.axes[0])) == 2
-    assert legend_of(figure) == ["auto = shooting", "mdsm"]
+    assert set(names_of(figure)) == {"auto = shooting", "mdsm"}
 
 
 @pytest.mark.parametrize(("off", "error"), [(1e-5, 1e-9), (0.05, 0.2)])
@@ -143,7 +144,7 @@ def test_methods_that_differ_by_more_than_their_errors_or_can_be_seen_to_are_bot
     figure = _figure(_joined([resonance.assign(error=1e-9), wrong]))
 
     assert len(curves_of(figure.axes[0])) == 2
-    assert legend_of(figure) == ["auto", "march"]
+    assert set(names_of(figure)) == {"auto", "march"}
 
 
 def _of_ten_methods(table: pd.DataFrame) -> pd.DataFrame:
@@ -206,7 +207,7 @@ def test_two_further_swept_quantities_give_small_multiples(plane: pd.DataFrame) 
 
     figure = _figure(table)
 
-    assert titles_of(figure) == [rf"damping ratio $\beta_1$ = {beta}" for beta in (0.1, 0.2)]
+    assert titles_of(figure) == [r"damping ratio $\beta_1$ = 0.1", r"$\beta_1$ = 0.2"]
     assert [len(curves_of(axes)) for axes in figure.axes] == [6, 6]
 
 
@@ -241,7 +242,7 @@ def test_a_law_without_the_parameter_along_the_axis_is_a_level_line(resonance: p
 def test_frequencies_of_several_laws_are_never_in_one_picture(line: pd.DataFrame) -> None:
     figure = _figure(_joined([line, line.assign(law="other")]))
 
-    assert titles_of(figure) == [rf"drive frequency $\Omega$ = {value}" for value in ("1", "1.5")]
+    assert titles_of(figure) == [r"drive frequency $\Omega$ = 1", r"$\Omega$ = 1.5"]
     assert legend_of(figure) == ["coulomb", "other"]
 
 
@@ -345,9 +346,11 @@ def test_a_point_alone_between_gaps_is_still_seen(resonance: pd.DataFrame) -> No
 
 
 def test_curves_that_lie_decades_apart_are_drawn_on_a_logarithmic_scale(plane: pd.DataFrame) -> None:
-    columns = ["energy_viscous", "energy_friction", "mean_friction"]
+    def scales(*columns: str) -> list[str]:
+        return [axes.get_yscale() for axes in _figure(plane, *columns).axes]
 
-    assert [axes.get_yscale() for axes in _figure(plane, *columns).axes] == ["log", "linear", "linear"]
+    assert scales("energy_viscous", "energy_friction") == ["log", "log"]
+    assert scales("energy_viscous", "mean_friction") == ["linear", "linear"]
 
 
 def test_an_energy_that_is_zero_but_for_rounding_is_drawn_as_zero(line: pd.DataFrame) -> None:
@@ -406,3 +409,60 @@ def test_the_style_can_be_used_by_its_name() -> None:
     with styles.context("frictionlab.charts.frictionlab"):
         assert mpl.rcParams["legend.frameon"] is False
         assert mpl.rcParams["axes.prop_cycle"].by_key()["color"][0] == "#08306b"
+
+
+def test_the_kink_lies_at_v_lin_between_points_of_a_sweep(resonance: pd.DataFrame) -> None:
+    coarse = resonance[::7].reset_index(drop=True)
+    assert 50.0 not in coarse["scene.belt_speed"].tolist()
+
+    (x, y), *_ = curves_of(_figure(coarse).axes[0])
+
+    (at,) = np.flatnonzero(np.isclose(x, 50.0))
+    assert y[at] == pytest.approx(0.4)
+    assert len(x) == len(coarse) + 1
+
+
+def test_where_a_state_is_not_unique_other_quantities_have_a_mark(resonance: pd.DataFrame) -> None:
+    values = ["not_unique", np.nan, np.nan]
+    resonance.loc[[5], ["status", "mean_friction", "velocity_amplitude"]] = values
+
+    marks = [
+        line
+        for line in _figure(resonance, "velocity_amplitude").axes[0].lines
+        if line.get_marker() == "$\\mathrm{I}$"
+    ]
+
+    assert [list(line.get_xdata()) for line in marks] == [[3.0]]
+
+
+def test_names_are_at_the_ends_of_curves_where_each_has_its_own(resonance: pd.DataFrame) -> None:
+    low, high = resonance.assign(law="low"), _other(resonance, "auto", 0.2).assign(law="high")
+
+    apart = _figure(_joined([low, high]))
+    assert apart.legends == []
+    assert names_of(apart) == ["low", "high"]
+    assert legend_of(_figure(_joined([low, high.assign(mean_friction=low["mean_friction"])]))) == [
+        "low",
+        "high",
+    ]
+
+
+def test_names_give_way_to_each_other_as_little_as_may_be() -> None:
+    heights = np.array([0.0, 50.0, 52.0, 100.0])
+
+    np.testing.assert_allclose(moved_apart(heights), [0.0, 46.5, 55.5, 100.0])
+
+
+def test_the_legend_tells_laws_and_values_apart_where_that_is_shorter(resonance: pd.DataFrame) -> None:
+    lengths = [{"law.presliding_length": length} for length in (0.1, 1.0, 10.0)]
+    table = _joined(resonance.assign(law=law, **each) for law in ("soft", "rough") for each in lengths)
+
+    figure = _figure(table)
+
+    assert legend_of(figure) == ["soft", "rough", r"presliding length $\delta$ = 0.1", "1", "10"]
+    laws, values = figure.legends[0].get_lines()[:2], figure.legends[0].get_lines()[2:]
+    assert {line.get_linestyle() for line in values} == {"None"}
+    lines = figure.axes[0].lines[:6]
+    assert {line.get_marker() for line in lines} == {line.get_marker() for line in values}
+    dashes = {str(line._unscaled_dash_pattern) for line in laws}
+    assert dashes == {str(line._unscaled_dash_pattern) for line in lines}

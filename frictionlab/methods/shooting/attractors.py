@@ -26,6 +26,8 @@ STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
 NO_GROWTH = 1e-6
 """By how much a multiplier may differ from one by rounding."""
+NEARLY_REPEATED = 1e-3
+"""How near states of an orbit are, over their size, between which fewer periods are tried for an orbit."""
 PLACES_ON_THE_BELT = 6
 """Starts at rest along the way of the belt in a period."""
 POINTS_KEPT = 100
@@ -283,9 +285,8 @@ class FollowedStarts:
         known = None if first is None else first.known
         way = self._problem.carried(self._scene.belt_speed, state, self._patience, known)
         self.seconds += way.seconds
-        found = (
-            first if way.period == ARRIVED else next((one for one in self.known if _arrived(way, one)), None)
-        )
+        beside = (one for one in self.known if ends_on(way.state, way.period, one))
+        found = first if way.period == ARRIVED else next(beside, None)
         if found is None:
             found, more = orbit_at_the_end(self._problem, self._scene, way)
             self.seconds += more
@@ -333,13 +334,6 @@ def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> in
     return int(min(max(FEWEST, own, 2.0 * DECAYS / rate), MOST))
 
 
-def _arrived(way: Transient, orbit: Attractor) -> bool:
-    """Whether a motion ended near an attractive orbit of one period."""
-    if orbit.curve is None or not way.period == orbit.period == 1:
-        return False
-    return _beside(way.state, orbit.curve.states[0])
-
-
 def _beside(one: Floats, other: Floats) -> bool:
     return bool(np.abs(one - other).max() <= 1e-5 * max(1.0, float(np.abs(other).max())))
 
@@ -360,21 +354,11 @@ def found_state(
     return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from, share)
 
 
-def orbit_at_the_end(
-    problem: PeriodicProblem, scene: Scene, way: Transient, alike: float = math.inf
-) -> tuple[Attractor, float]:
-    """The orbit at the end of a way, or the spread of what never repeats.
-
-    alike: an orbit of fewer periods is looked for where states that far apart in time are as near, over their size.
-    """
+def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
+    """The orbit at the end of a way, or the spread of what never repeats; and the kernel time it took."""
     seconds = 0.0
     if way.period > 0:
-        curve, period, seconds = _shortest(problem, scene, way, alike)
-        means = curve.closed.mean  # of finer maps than those on the way
-        points: Floats = curve.states
-        if period > 1 and curve.closed.found[0]:
-            whole = problem.repeated(scene.belt_speed, curve.states[0], period)
-            means, points = whole.means, whole.states
+        curve, means, points, seconds = _shortest(problem, scene, way)
         orbit = closed_orbit(curve, means, points)
         if orbit is not None:
             return orbit, seconds
@@ -395,24 +379,30 @@ def undamped(scene: Scene) -> bool:
 
 def ends_on(state: Floats, period: int, orbit: Attractor) -> bool:
     """Whether a state is beside one of a closed orbit of so many periods."""
-    return orbit.period == period and any(_beside(state, point) for point in orbit.points)
+    return orbit.period == period > 0 and any(_beside(state, point) for point in orbit.points)
 
 
-def _shortest(
-    problem: PeriodicProblem, scene: Scene, way: Transient, alike: float
-) -> tuple[Curve, int, float]:
-    """The orbit at the end of a way, and its periods: fewer than seen where the motion was still alternating."""
+def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, Floats, Floats, float]:
+    """The orbit at the end of a way, its mean and its state in each of its periods, and the kernel time it took.
+
+    Of fewer periods than were seen where the motion was still alternating.
+    """
     curve, seconds = problem.close([scene], way.state, way.period)
-    near = alike * max(1.0, float(np.abs(way.state).max()))
-    for period in [each for each in range(1, way.period) if way.period % each == 0]:
-        if len(way.states) > period and np.abs(way.state - way.states[-1 - period]).max() > near:
+    if way.period == 1 or not curve.closed.found[0]:
+        return curve, curve.closed.mean, curve.states, seconds
+    whole = problem.repeated(
+        scene.belt_speed, curve.states[0], way.period
+    )  # of finer maps than those on the way
+    seconds += whole.seconds
+    near = NEARLY_REPEATED * max(1.0, float(np.abs(curve.states[0]).max()))
+    for period in [each for each in range(1, len(whole.states)) if way.period % each == 0]:
+        if np.abs(whole.states[period - 1] - curve.states[0]).max() > near:
             continue
         shorter, more = problem.close([scene], curve.states[0], period)
         seconds += more
-        both = curve.closed.found[0] and shorter.closed.found[0]
-        if both and _beside(shorter.states[0], curve.states[0]):
-            return shorter, period, seconds
-    return curve, way.period, seconds
+        if shorter.closed.found[0] and _beside(shorter.states[0], curve.states[0]):
+            return shorter, whole.means[:period], whole.states[:period], seconds
+    return curve, whole.means, whole.states, seconds
 
 
 class Destination(Protocol):

@@ -32,8 +32,6 @@ ACCURACY, FINER = 1e-7, 1e-9
 """Of the maps of these periods, over the normal load; and of those that tell what they may be off by."""
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
-NEARLY_REPEATED = 1e-3
-"""How near states are, over their size, between which fewer periods are tried for an orbit."""
 
 
 class LongMotion:
@@ -60,7 +58,7 @@ class LongMotion:
             self.end = next((one for one in known if ends_on(way.state, period, one)), None)
         if period and self.end is None:
             found = Transient(period, way.means, way.states, way.state, 0.0)
-            end, more = orbit_at_the_end(self._problem, self._scene, found, NEARLY_REPEATED)
+            end, more = orbit_at_the_end(self._problem, self._scene, found)
             self.end = end if end.curve is not None else None
             self.seconds += more
 

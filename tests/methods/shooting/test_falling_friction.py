@@ -220,7 +220,8 @@ def test_the_period_counts_those_in_which_the_belt_carries_the_mass_at_rest():
     assert abs(row["mean_friction"] - motion.means[-21:].mean()) <= row["error"] + 1e-8
 
 
-def test_where_a_start_nears_an_orbit_but_does_not_close_it_its_mean_is_that_of_the_orbit():
+def test_starts_that_come_beside_an_orbit_of_two_periods_end_there():
+    """Some of them close in on it too slowly for a search of their own."""
     one = Scene(
         damping_ratio=0.013511484023561983,
         normal_load=14.694037970813984,
@@ -229,8 +230,8 @@ def test_where_a_start_nears_an_orbit_but_does_not_close_it_its_mean_is_that_of_
     )
     law = Coulomb(mu=0.5265775383087952, mu_static=0.9355541855548389)
     answers, row = solve(one, law, 1e-6)
-    assert (answers.status, answers.error_kind, answers.unique) == (["ok"], ["estimated"], ["no"])
-    assert "states that differ have this mean: an orbit of 2 drive periods" in answers.reason[0]
+    assert (answers.status, answers.error_kind, answers.unique) == (["ok"], ["estimated"], ["tested"])
+    assert "tested: 18 starts" in answers.reason[0]
     assert row["period"] == 2.0
     motion = followed(one, law)
     assert abs(row["mean_friction"] - motion.means[-2:].mean()) <= row["error"] + 1e-8

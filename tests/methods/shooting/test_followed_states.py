@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from itertools import count
 
 import numpy as np
@@ -11,7 +12,9 @@ import pytest
 from test_falling_friction import Line
 
 import frictionlab as fl
+from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting import attractors
+from frictionlab.methods.shooting.driven import SteadyStates
 from frictionlab.methods.shooting.followed_states import FROM_ABOVE, follow_states
 from frictionlab.methods.shooting.method import Shooting
 
@@ -147,3 +150,18 @@ def test_starts_that_were_all_stopped_find_nothing(monkeypatch):
 
     assert answer.status == ["failed"]
     assert "2 of 2 starts were followed for 3 drive periods only" in answer.reason[0]
+
+
+def test_states_that_differ_but_in_their_mean_have_that_mean():
+    """As next to a period doubling: one orbit entered as if it took two periods."""
+    states = SteadyStates([SWUNG], PeriodicProblem(SWUNG, FALLS, 1e-8))
+    states.close_all([0])
+    states.check_attraction(0)
+    before = states.mean[0], states.unique[0]
+    reached = states.followed[0].reached
+    reached[-1] = replace(reached[-1], period=2)
+    states._judge_starts(0)
+
+    assert (states.status[0], states.unique[0]) == ("ok", "no")
+    assert states.mean[0].real == before[0].real
+    assert "states that differ have this mean: an orbit of one drive period" in states.reason[0]

@@ -20,6 +20,8 @@ from frictionlab.results.table import swept_inputs
 from frictionlab.runner.saved import Saved
 from frictionlab.units.shown import in_shown_units
 
+NOT_DETERMINED = "not determined"
+
 
 class CurveRows(NamedTuple):
     """The rows of one law and method that differ in belt speed alone; where: what else was swept, and its value."""
@@ -107,9 +109,10 @@ class Facts:
         return {key: scale for key, scale in found.items() if scale == scale}
 
     def speed_in_given_units(self, curve: CurveRows, row: pd.Series, name: str) -> str:
-        """A belt speed of a row of a curve with its error."""
+        """A belt speed of a row of a curve with its error, unless that is larger."""
         scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
-        return with_error(scale * float(row[name]), scale * float(row[f"{name}_error"]))
+        value, error = scale * float(row[name]), scale * float(row[f"{name}_error"])
+        return NOT_DETERMINED if error > abs(value) else with_error(value, error)
 
 
 def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:

@@ -9,7 +9,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.printable import with_error
-from frictionlab.report.facts import CurveRows, Facts, whose
+from frictionlab.report.facts import NOT_DETERMINED, CurveRows, Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
 from frictionlab.report.tables import Cell, Grid, grid, listed, named, setting, size
 from frictionlab.results.summary import alike, pattern
@@ -96,12 +96,15 @@ def _one(run: Facts, curve: CurveRows) -> Markup:
     row, shape = curve.rows.iloc[0], _shape(curve)
     area = with_error(row["shape_area"], row["shape_area_error"])
     end = run.speed_in_given_units(curve, row, "reversal_end")
+    at = Markup(' at <span class="short">{} = {}{}</span>')
+    where = at.format(symbol_html(run.speed), end, unit_html(run.speed))
     told = Markup(
-        'The curve of {} is <a href="#shape">{}</a> ({}, the straight line from rest to the end of reversal at '
-        '<span class="short">{} = {}{}</span>; area {})'
+        'The curve of {} is <a href="#shape">{}</a> '
+        "({}, the straight line from rest to the end of reversal{}; area {})"
     )
-    speed = symbol_html(run.speed), end, unit_html(run.speed)
-    return told.format(curve.law, shape, MEANING[shape][0], *speed, area)
+    return told.format(
+        curve.law, shape, MEANING[shape][0], f", {end}" if end == NOT_DETERMINED else where, area
+    )
 
 
 def _several(found: Sequence[CurveRows]) -> Markup:

@@ -17,7 +17,7 @@ TOLD: dict[str, tuple[str, str]] = {
     "with velocity (NUMBER)": ("velocity", "m/s"),
     "V_lin = (NUMBER)": ("velocity", "m/s"),
     "end of reversal, (NUMBER)": ("velocity", "m/s"),
-    "highest belt speed, (NUMBER)": ("velocity", "m/s"),
+    "highest belt speed that has a number, (NUMBER)": ("velocity", "m/s"),
     "ends at belt speed (NUMBER)": ("velocity", "m/s"),
     "between belt speeds (NUMBER) and": ("velocity", "m/s"),
     "between belt speeds .* and (NUMBER)": ("velocity", "m/s"),

@@ -100,7 +100,9 @@ def _bracket_end(rows: Rows) -> Estimate:
         )
     last = int(np.flatnonzero(reverses)[-1])
     if last + 1 == reverses.size:
-        raise UnreadableCurve(f"slip still reverses at the highest belt speed, {rows.belt_speed[-1]:.6g}")
+        raise UnreadableCurve(
+            f"slip still reverses at the highest belt speed that has a number, {rows.belt_speed[-1]:.6g}"
+        )
     low, high = (float(speed) for speed in rows.belt_speed[last : last + 2])
     fall = float(excess[last] - excess[last + 1])
     share = float(np.clip(excess[last] / fall, 0.0, 1.0)) if fall > 0.0 else 0.5

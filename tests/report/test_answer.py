@@ -196,6 +196,11 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
         "The curve of coulomb is concave (above its chord, the straight line from rest to the end of reversal at "
         "vb = 50.00 ± 0.02; area 0.0577 ± 0.0002).",
     ),
+    "an end known to more than itself is not told": (
+        [shape("coulomb", "concave", reversal_end=12.0, reversal_end_error=27.0)],
+        "The curve of coulomb is concave (above its chord, the straight line from rest to the end of reversal, "
+        "not determined; area 0.0577 ± 0.0002).",
+    ),
     "curves that are alike are told together": (
         [shape(law, "convex") for law in ("coulomb", "dahl", "lugre")],
         "All 3 curves are convex (below their chords).",

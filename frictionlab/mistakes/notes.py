@@ -157,8 +157,8 @@ LITERATURE = (
     ("c d", "damping"),
     ("zeta xi beta", "damping_ratio"),
     ("omega0 omegan f0 fn wn", "natural_frequency"),
-    ("n fn load weight preload", "normal_load"),
-    ("v vb v0 velocity speed", "belt_speed"),
+    ("n fn load weight preload normalforce", "normal_load"),
+    ("v vb v0 velocity speed beltvelocity", "belt_speed"),
     ("g", "gravity"),
     ("step points n count steps", "num"),
 )

@@ -11,12 +11,13 @@ from pydantic import BaseModel
 from frictionlab import registry
 from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text
 from frictionlab.mistakes.validation import field_name, number_paths, record_at, value_paths
-from frictionlab.scene.dimensional import Dimensional
+from frictionlab.scene.as_written import without_unit
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.springs_in_si import DASHPOT, SPRING, SWINGS
 from frictionlab.study.axes import FRICTION, LINKED, STATIC
 from frictionlab.study.choices import label_of
 from frictionlab.study.parts import coefficient_of
+from frictionlab.study.ranges import ENDS
 from frictionlab.study.written import column_of, scene_is_in_si
 
 _GROUPS = (
@@ -92,15 +93,24 @@ class Targets:
         else:
             what = "only scene.<value>, laws.<label>.<parameter>, friction and linked can be swept"
             what = "no such value in a scene" if head == "scene" else what
-            self._notes.on_key(path, what, self._hint(key))
+            self._notes.on_key(path, what, self._hint(key, path))
             found = None
         return [] if found is None else [found]
 
-    def _hint(self, key: str) -> str:
+    def _hint(self, key: str, at: Path) -> str:
         """The value whose path ends so, of a part that the study has; else the name most similar to the one given."""
-        ending = (path for path in self._sweepable if path.endswith(f".{key}"))
+        names = {path: {path, without_unit(path)} for path in self._sweepable}
+        ending = (path for path in names if any(f".{name}".endswith(f".{key}") for name in names[path]))
         found = next((path for path in ending if self._has_part(path)), None)
-        return did_you_mean(found or key, [*self._sweepable, FRICTION, LINKED])
+        as_told = without_unit if self._has_texts(at) else str
+        known = [*dict.fromkeys(map(as_told, names)), FRICTION, LINKED]
+        return did_you_mean(as_told(found or key), known)
+
+    def _has_texts(self, at: Path) -> bool:
+        """Whether values of a sweep are written as text, with units then: so its name needs none."""
+        given = value_at(self._tree, at)
+        each = [given.get(end) for end in ENDS] if isinstance(given, dict) else given
+        return isinstance(each, list) and any(isinstance(value, str) for value in each)
 
     def _has_part(self, path: str) -> bool:
         """Whether the study has the law, or gives the part of the scene, that this value is of."""
@@ -136,10 +146,8 @@ class Targets:
     def _of_scene(self, steps: list[str], path: Path) -> Target | None:
         parent: Path = ("scene", *steps[:-1])
         if steps[0] != "dimensional" and isinstance(value_at(self._tree, ("scene", "dimensional")), dict):
-            known = [f"scene.{value}" for value in value_paths(Dimensional, "dimensional.")]
-            hint = did_you_mean(f"scene.{'.'.join(steps)}", known)
             what = "the scene is given in SI units: sweep its values under scene.dimensional"
-            self._notes.on_key(path, what, hint)
+            self._notes.on_key(path, what, self._hint(f"scene.dimensional.{'.'.join(steps)}", path))
             return None
         within = value_at(self._tree, parent)
         name = ".".join(map(str, parent))

@@ -16,6 +16,7 @@ from frictionlab.study.axes import LINKED, GridValue
 from frictionlab.study.ranges import ENDS, WITHIN, SpeedRange, SweepRange
 from frictionlab.study.sweep_targets import Target, Targets, value_at
 from frictionlab.study.written import column_of, number_written, scene_is_in_si
+from frictionlab.units.text import number_before_unit
 
 
 @dataclass
@@ -82,17 +83,20 @@ class _SweepReader:
 
     def _numbers(self, given: Any, target: Target | None, key: str) -> Any:
         """The values of a sweep, or the ends of its range, those written as text with a unit as numbers."""
-        if target is None or not self._in_si:
+        if not self._in_si:
             return given
         key = key.rpartition(".")[2]
+
+        def number(each: Any) -> Any:
+            if target is None:  # that there is no such thing is said; not that its texts are no numbers
+                return number_before_unit(each) if isinstance(each, str) else each
+            return number_written(target.record, key, target.key, each)
+
         if isinstance(given, list):
-            return [number_written(target.record, key, target.key, each) for each in given]
+            return [number(each) for each in given]
         if not isinstance(given, dict):
             return given
-        return {
-            name: number_written(target.record, key, target.key, each) if name in ENDS else each
-            for name, each in given.items()
-        }
+        return {name: number(each) if name in ENDS else each for name, each in given.items()}
 
     def read_linked(self, given: Any) -> None:
         """The entries of lists that advance together."""

@@ -23,7 +23,7 @@ centi- = 1e-2 = c-
 kilo- = 1e3 = k-
 mega- = 1e6 = M-
 meter = [length] = m = metre
-second = [time] = s
+second = [time] = s = sec
 gram = [mass] = g
 radian = [angle] = rad
 percent = 0.01
@@ -34,6 +34,9 @@ degree = turn / 360 = deg
 hertz = turn / second = Hz
 revolutions_per_minute = turn / minute = rpm
 newton = kilogram * meter / second ** 2 = N
+newton_meter = newton * meter = Nm
+newton_second = newton * second = Ns
+micron = 1e-6 * meter
 joule = newton * meter = J
 standard_gravity = 9.80665 * meter / second ** 2 = g_0
 tonne = 1000 * kilogram = t
@@ -44,13 +47,14 @@ pound_force = pound * standard_gravity = lbf
 """
 ALLOWED = (
     "m, s, min, h, g, t, N, J, Hz, rpm, rad, deg, %, g_0, in, ft, lb and lbf, with n, u, m, c, k or M before them, "
-    "and their products and quotients"
+    "their products, with a space as in N mm, and quotients"
 )
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _FACTOR = r"(?:[^\W\d_]+(?:_0)?|%|°)(?:(?:\^|\*\*)?-?[1-9]|[⁻]?[¹²³])?"
 _TEXT = re.compile(
     rf"\s*(?P<number>{NUMBER})\s*(?P<unit>(?:1?\s*/\s*)?{_FACTOR}(?:\s*[*·/]\s*{_FACTOR}|\s+{_FACTOR})*)\s*"
 )
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[ ,']\d{3})+(?:\D.*)?")
 _POWER = re.compile(r"(?<=[^\W\d_]|%|°)(?:\^|\*\*)?(-?[1-9])")
 _BASE = {"force": "N", "length": "m", "time": "s"}
 _PLAIN = str.maketrans("⁻¹²³·", "-123*")
@@ -95,7 +99,7 @@ def in_units(text: str, unit: str) -> float | Unfit:
     """
     example = quantity_in(unit).example
     if not (read := _TEXT.fullmatch(text)):
-        return Unfit(text, f"must be a number, or text with a unit such as {example}")
+        return Unfit(text, f"must be a number, or text with a unit such as {example}{_meant(text.strip())}")
     try:
         number = float(Fraction(read["number"]) * factor_of(read["unit"], unit))
         shown = f"{read['number']} {read['unit']}"
@@ -104,6 +108,19 @@ def in_units(text: str, unit: str) -> float | Unfit:
         return Unfit(text, f"'{text.strip()}' {problem}")
     except OverflowError:
         return Unfit(text, "must be a finite number")
+
+
+def _meant(text: str) -> str:
+    """What to write where digits are parted by commas or spaces, as the end of a sentence."""
+    whole = re.sub(r"(?<=\d)[ ,'](?=\d)", "", text) if _THOUSANDS.fullmatch(text) else ""
+    meant = [each for each in (whole, text.replace(",", ".", 1)) if _TEXT.fullmatch(each)]
+    return f"; write {' or '.join(meant)}" if meant else ""
+
+
+def number_before_unit(text: str) -> float | str:
+    """The number of a text with whatever unit; the text where it is none."""
+    read = _TEXT.fullmatch(text)
+    return float(Fraction(read["number"])) if read else text
 
 
 def in_units_of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:

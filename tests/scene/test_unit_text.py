@@ -151,6 +151,39 @@ def test_a_mistake_is_told_where_it_is_with_what_is_allowed(right: str, wrong: s
     assert len(caught.value.mistakes) == 1
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("0,5 N/m", "; write 0.5 N/m"),
+        ("5,000 N/m", "; write 5000 N/m or 5.000 N/m"),
+        ("12 500 N/m", "; write 12500 N/m"),
+        ("1,200.5 N/m", "; write 1200.5 N/m"),
+        ("five N/m", "such as 5 kN/m"),
+    ],
+)
+def test_digits_apart_are_told_how_to_write_them(text: str, meant: str) -> None:
+    found = in_units(text, "N/m")
+
+    assert isinstance(found, Unfit)
+    assert found.what.endswith(meant)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "number"),
+    [
+        ("5 Ns/m", "N s/m", 5.0),
+        ("2 Nm", "J", 2.0),
+        ("3 micron", "m", 3e-6),
+        ("3 microns", "m", 3e-6),
+        ("3 \u00b5m", "m", 3e-6),
+        ("3 \u03bcm", "m", 3e-6),
+        ("3 mm/sec", "m/s", 3e-3),
+    ],
+)
+def test_units_as_people_write_them(text: str, unit: str, number: float) -> None:
+    assert in_units(text, unit) == number
+
+
 def test_a_scene_is_changed_under_a_key_without_a_unit() -> None:
     scene = fl.Scene(dimensional=TEXTS)
 

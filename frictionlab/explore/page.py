@@ -9,11 +9,13 @@ from typing import Any
 
 from frictionlab import __version__
 from frictionlab.explore.run_data import run_data
+from frictionlab.report.question import scene_sentences
 from frictionlab.results.words import counted
 from frictionlab.runner.folder import check_page, write_page
 from frictionlab.runner.saved import Saved
 
 PAGE_PARTS = Path(__file__).parent / "parts"
+OWN_SCENE = "A body on a spring and a dashpot lies on a moving belt, and a load shakes it along the belt."
 TITLE = "Mean friction of a vibrated body on a moving belt"
 
 
@@ -30,11 +32,12 @@ def write_explorer(file: Path, saved: Saved | None = None) -> Path:
 def explorer(saved: Saved | None = None) -> str:
     """The page as text. Raises FolderError."""
     data = None if saved is None else run_data(saved)
-    scripts = ["solver.js", "chart.js", "coulomb.js", *([] if data is None else ["run.js"])]
+    scripts = ["address.js", "solver.js", "chart.js", "coulomb.js", *([] if data is None else ["run.js"])]
     values = {
         "generator": f"frictionlab {__version__}",
         "title": TITLE,
         "style": _part("page.css"),
+        "scene": OWN_SCENE if saved is None else escape(scene_sentences(saved.study)),
         "run": ""
         if saved is None
         else _filled("run.html", {"title": escape(saved.title), "sentence": _sentence(saved)}),

@@ -188,22 +188,33 @@ function read(page) {
     line: page.querySelector("#curve path[stroke-width='2.5']").getAttribute("d"),
   };
 }
+function drag(page, id, share) {
+  const svg = page.getElementById(id), box = svg.getBoundingClientRect(), { left, right } = { left: 58, right: 14 };
+  const at = { clientX: box.left + left + share * (box.width - left - right), bubbles: true };
+  for (const kind of ["pointerdown", "pointerup"]) svg.dispatchEvent(new PointerEvent(kind, at));
+}
 function drive(frame) {
   const page = frame.contentDocument;
   frame.contentWindow.addEventListener("error", (event) => told.errors.push(event.message));
   told.states.push(read(page));
   move(page, "frequency", Math.log(2));
   told.states.push(read(page));
-  move(page, "friction", 0.9);
-  move(page, "belt", 0.25);
   move(page, "run-0", 1);
   move(page, "run-along", 3);
+  told.driven = read(page).chosen;
+  move(page, "friction", 0.9);
+  move(page, "belt", 0.25);
   told.states.push(read(page));
   move(page, "damping-number", 0.123);
   told.states.push(read(page));
   move(page, "belt-number", 0);
   move(page, "friction", 1.2);
   told.states.push(read(page));
+  drag(page, "curve", 0.5);
+  told.dragged = read(page).chosen.belt;
+  drag(page, "run-curves", 1);
+  told.last = page.querySelector("#run-values caption").textContent;
+  told.address = frame.contentWindow.location.hash;
 }
 function opened(width) {
   const frame = document.createElement("iframe");
@@ -262,6 +273,20 @@ def test_moving_a_slider_changes_the_numbers_to_those_of_exact(opened: Any) -> N
         assert state["work"] == pytest.approx(wanted.energy_friction, rel=2e-3)
     assert len({state["line"] for state in (first, faster, third, fourth)}) == 4
     assert len({state["mean"] for state in (first, faster, third, fourth)}) == 4
+
+
+def test_the_sliders_of_the_run_move_those_of_the_solver(opened: Any, saved: Saved) -> None:
+    rows = saved.table[saved.table["scene.drive.frequency"] == 2.0]
+    here = rows[rows["scene.belt_speed"] == np.unique(rows["scene.belt_speed"])[3]]
+
+    assert (opened["driven"]["frequency"], opened["driven"]["friction"]) == (2, 0.1)
+    assert opened["driven"]["belt"] == pytest.approx(here["velocity_ratio"].iloc[0], rel=1e-5)
+
+
+def test_a_drag_across_a_chart_chooses_and_the_address_keeps_it(opened: Any) -> None:
+    assert opened["dragged"] == pytest.approx(0.6, abs=0.01)
+    assert opened["last"].endswith("= 55")
+    assert {"run-along=10", "friction=1.2"} <= {*opened["address"].lstrip("#").split("&")}
 
 
 def test_where_friction_holds_the_body_on_a_belt_at_rest_the_page_says_so(opened: Any) -> None:

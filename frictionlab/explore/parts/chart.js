@@ -78,14 +78,25 @@ function drawAxes(svg, x, y) {
   const path = (points) => (points.length ? "" : "M0,0") + points.map(([a, b], i) => `${i ? "L" : "M"}${px(a).toFixed(2)},${py(b).toFixed(2)}`).join("");
   return {
     px, py, left, right, top, bottom,
-    line: (points, look) => svgElement(svg, "path", { fill: "none", stroke: "#1b1f24", "stroke-width": 2, ...look, d: path(points) }),
+    valueAt: (place) => x.span[0] + (x.span[1] - x.span[0]) * (place - left) / (right - left),
+    line: (points, look) => svgElement(svg, "path", { fill: "none", stroke: "var(--ink)", "stroke-width": 2, ...look, d: path(points) }),
     area: (points, look) => svgElement(svg, "path", { stroke: "none", ...look, d: `${path(points)}Z` }),
-    dot: ([a, b], look) => svgElement(svg, "circle", { cx: px(a), cy: py(b), r: 5, fill: "#1b1f24", ...look }),
+    dot: ([a, b], look) => svgElement(svg, "circle", { cx: px(a), cy: py(b), r: 5, fill: "var(--ink)", ...look }),
     box: (from, to, low, high, look) => svgElement(svg, "rect", { x: px(from), width: Math.max(px(to) - px(from), 1), y: low, height: high - low, ...look }),
-    upright: (at, look) => svgElement(svg, "line", { x1: px(at), x2: px(at), y1: top, y2: bottom, stroke: "#57606a", ...look }),
-    level: (at, look) => svgElement(svg, "line", { x1: left, x2: right, y1: py(at), y2: py(at), stroke: "#57606a", ...look }),
+    upright: (at, look) => svgElement(svg, "line", { x1: px(at), x2: px(at), y1: top, y2: bottom, stroke: "var(--soft)", ...look }),
+    level: (at, look) => svgElement(svg, "line", { x1: left, x2: right, y1: py(at), y2: py(at), stroke: "var(--soft)", ...look }),
     text: (a, b, text, look) => svgElement(svg, "text", { x: a, y: b, ...look }, text),
   };
+}
+
+/** While a pointer is down on the svg, its place across it is told. */
+function dragged(svg, moved) {
+  let down = false;
+  const tell = (event) => moved(event.clientX - svg.getBoundingClientRect().left);
+  svg.classList.add("dragged");
+  svg.addEventListener("pointerdown", (event) => { down = true; tell(event); });
+  addEventListener("pointermove", (event) => { if (down) tell(event); });
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => { down = false; });
 }
 
 /** A number for reading, with a true minus sign. */

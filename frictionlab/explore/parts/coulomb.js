@@ -20,7 +20,8 @@ const WORDS = {
   undecided: "the area between it and its chord is too small, or changes sign towards V_{lin}",
 };
 
-const chosen = {};
+const chosen = {}, moves = {};
+let curveChart = null;
 const solved = { scene: null, curve: null, milliseconds: 0 };
 
 function byId(id) {
@@ -32,16 +33,29 @@ function setUpSlider(name, { low, high, start, step, logarithmic }) {
   const range = byId(name), number = byId(`${name}-number`);
   const place = logarithmic ? Math.log : Number, value = logarithmic ? Math.exp : Number;
   const round = (found) => (logarithmic ? Number(found.toPrecision(3)) : Number(found.toFixed(4)));
-  Object.assign(range, { min: place(low), max: place(high), step: logarithmic ? 0.005 : step, value: place(start) });
-  Object.assign(number, { min: low, max: high, step: "any", value: start });
-  chosen[name] = start;
-  const choose = (found, from) => {
+  const told = document.createElement("small");
+  const set = (found, from) => {
     chosen[name] = found;
-    if (from === range) number.value = found; else range.value = place(found);
+    if (from !== number) number.value = found;
+    if (from !== range) range.value = place(found);
     range.setAttribute("aria-valuetext", String(found));
+  };
+  const choose = (found, from) => {
+    set(found, from);
+    remember(name, found);
     update(name !== "belt");
   };
-  range.setAttribute("aria-valuetext", String(start));
+  /* A scene of a run may lie beyond the ends. */
+  const move = moves[name] = (found) => {
+    [low, high] = [Math.min(low, found), Math.max(high, found)];
+    Object.assign(range, { min: place(low), max: place(high), step: logarithmic ? 0.005 : step });
+    Object.assign(number, { min: low, max: high, step: "any" });
+    told.textContent = `${Number(low.toPrecision(4))} to ${Number(high.toPrecision(4))}`;
+    set(found, null);
+  };
+  document.querySelector(`label[for="${name}"]`).append(told);
+  const known = remembered(name), possible = logarithmic ? known > 0 : known >= 0;
+  move(known !== null && possible ? known : start);
   range.addEventListener("input", () => choose(Math.min(Math.max(round(value(Number(range.value))), low), high), range));
   number.addEventListener("input", () => {
     const found = Number(number.value);
@@ -49,6 +63,12 @@ function setUpSlider(name, { low, high, start, step, logarithmic }) {
   });
   // What is out of range or no number is not solved: the field goes back to what is.
   number.addEventListener("change", () => { number.value = chosen[name]; });
+}
+
+/** Move the sliders to a scene, to six digits, and solve it. */
+function showScene(scene) {
+  for (const [name, value] of Object.entries(scene)) moves[name](Number(value.toPrecision(6)));
+  update(true);
 }
 
 function update(sceneChanged) {
@@ -114,17 +134,18 @@ function pointSentence(state) {
 }
 
 function drawCurve(scene, { speeds, means, sticks, start }, mean) {
-  const chart = drawAxes(byId("curve"), { label: "belt speed v_{b} / V_{lin}", span: [0, 1.2] }, { label: "mean friction / \u03bc", span: [0, 1.08] });
+  const end = Math.max(1.2, 1.05 * chosen.belt);
+  const chart = curveChart = drawAxes(byId("curve"), { label: "belt speed v_{b} / V_{lin}", span: [0, end] }, { label: "mean friction / \u03bc", span: [0, 1.08] });
   const points = [[0, start], ...speeds.map((speed, i) => [speed, means[i]])];
-  chart.area(points, { fill: "#cfd8e3" });
-  chart.line([[0, start], [1, 1]], { stroke: "#57606a", "stroke-width": 1.5, "stroke-dasharray": "6 4" });
+  chart.area(points, { fill: "var(--area)" });
+  chart.line([[0, start], [1, 1]], { stroke: "var(--soft)", "stroke-width": 1.5, "stroke-dasharray": "6 4" });
   for (const [from, to] of stretches(sticks.map((stick) => stick > 0))) {
-    chart.box(from ? speeds[from] : 0, speeds[Math.min(to + 1, speeds.length - 1)], chart.bottom - 7, chart.bottom, { fill: "#8c959f" });
+    chart.box(from ? speeds[from] : 0, speeds[Math.min(to + 1, speeds.length - 1)], chart.bottom - 7, chart.bottom, { fill: "var(--mark)" });
   }
   chart.upright(1, { "stroke-dasharray": "2 4" });
   chart.text(chart.px(1) + 5, chart.bottom - 12, "V_{lin}", {});
-  chart.line([...points, [1.2, 1]], { stroke: "#0b3d6e", "stroke-width": 2.5, "stroke-linejoin": "round" });
-  if (mean !== null) chart.dot([chosen.belt, mean], { r: 6, fill: "#0b3d6e", stroke: "#fff", "stroke-width": 2 });
+  chart.line([...points, [end, 1]], { stroke: "var(--line-0)", "stroke-width": 2.5, "stroke-linejoin": "round" });
+  if (mean !== null) chart.dot([chosen.belt, mean], { r: 6, fill: "var(--line-0)", stroke: "var(--paper)", "stroke-width": 2 });
 }
 
 function drawOrbit(scene, belt, samples) {
@@ -134,17 +155,17 @@ function drawOrbit(scene, belt, samples) {
   const slip = drawAxes(byId("slip"), { label: "time / period", span: times }, { label: "slip velocity / V_{lin}", span: slips });
   slip.level(0, { "stroke-dasharray": "6 4" });
   const path = samples.map((s) => [s.t / scene.period, speed(s.w)]);
-  slip.line(path, { stroke: "#0b3d6e" });
+  slip.line(path, { stroke: "var(--line-0)" });
   for (const [from, to] of stretches(samples.map((s) => s.stick))) {
-    slip.line([path[from], path[to]], { stroke: "#0b3d6e", "stroke-width": 5 });
+    slip.line([path[from], path[to]], { stroke: "var(--line-0)", "stroke-width": 5 });
   }
   const velocities = slips.map((value) => value + chosen.belt);
   const phase = drawAxes(byId("phase"), { label: "position / P", span: positions }, { label: "velocity / V_{lin}", span: velocities });
   phase.level(chosen.belt, { "stroke-dasharray": "6 4" });
-  phase.line(samples.map((s) => [s.x, speed(s.w + belt)]), { stroke: "#0b3d6e" });
+  phase.line(samples.map((s) => [s.x, speed(s.w + belt)]), { stroke: "var(--line-0)" });
   const loop = drawAxes(byId("loop"), { label: "position / P", span: positions }, { label: "friction on the body / \u03bc", span: [-1.25, 1.25] });
-  loop.area(samples.map((s) => [s.x, -s.friction]), { fill: "#cfd8e3" });
-  loop.line([...samples, ...samples.slice(0, 1)].map((s) => [s.x, -s.friction]), { stroke: "#0b3d6e" });
+  loop.area(samples.map((s) => [s.x, -s.friction]), { fill: "var(--area)" });
+  loop.line([...samples, ...samples.slice(0, 1)].map((s) => [s.x, -s.friction]), { stroke: "var(--line-0)" });
 }
 
 /** First and last places of each stretch of true ones. */
@@ -159,8 +180,13 @@ function stretches(flags) {
 }
 
 for (const [name, limits] of Object.entries(SLIDERS)) {
-  const start = run?.start?.[name] ?? limits.start;
-  setUpSlider(name, { ...limits, start, low: Math.min(limits.low, start), high: Math.max(limits.high, start) });
+  setUpSlider(name, { ...limits, start: run?.start?.[name] ?? limits.start });
 }
 update(true);
+dragged(byId("curve"), (x) => {
+  const found = Math.max(0, Math.min(curveChart.valueAt(x), Number(byId("belt-number").max)));
+  moves.belt(Number(found.toFixed(3)));
+  remember("belt", chosen.belt);
+  drawAll();
+});
 addEventListener("resize", drawAll);

@@ -1,18 +1,18 @@
 "use strict";
 /* The part of the page that shows the table of a run: a slider for each swept quantity, and the curves of every law. */
 
-const COLOURS = ["#0b3d6e", "#c2410c", "#2e7d32", "#7a1fa2", "#8a6d00", "#00838f"];
+const COLOURS = [0, 1, 2, 3, 4, 5].map((i) => `var(--line-${i})`);
 const DASHES = ["none", "9 4", "2 3", "9 3 2 3", "5 2", "12 3 2 3 2 3"];
 /* Curves differ in dashes, too, for print in grey. */
 
 const VISIBLE = 0.004;
 /* Share of the axis: a narrower error band is thinner than its curve. */
 
-const SOLVED = { stroke: "#b9c2cd", "stroke-width": 7 };
+const SOLVED = { stroke: "var(--wide)", "stroke-width": 7 };
 /* The Coulomb curve that the page solves: wide and below those of the run, so that it is seen where they coincide. */
 
 const places = run.swept.map(() => 0);
-let along = Math.floor((run.abscissa.values.length - 1) / 2);
+let along = 0, runChart = null;
 
 /** How a law with a method is drawn. */
 function lookOf(look) {
@@ -20,23 +20,37 @@ function lookOf(look) {
   return { stroke: COLOURS[look % COLOURS.length], "stroke-width": 2.3, "stroke-dasharray": dashes };
 }
 
-/** A slider over given values; ``chosen`` is told the index. */
+/** A slider over given values; ``chosen`` is told the index. A function that moves it. */
 function addSlider(id, label, values, start, chosen) {
   const box = document.createElement("div"), name = document.createElement("label");
   const range = document.createElement("input"), value = document.createElement("output");
   box.className = "slider";
   name.htmlFor = range.id = id;
   write(name, label);
-  Object.assign(range, { type: "range", min: 0, max: values.length - 1, step: 1, value: start });
+  const told = (found) => (typeof found === "number" ? String(Number(found.toPrecision(6))) : found);
+  const most = values.length - 1, known = remembered(id), ends = document.createElement("small");
+  ends.textContent = `${told(values[0])} to ${told(values[most])}, ${values.length} values`;
+  const begin = Number.isInteger(known) && known >= 0 && known <= most ? known : start;
+  Object.assign(range, { type: "range", min: 0, max: most, step: 1, value: begin });
   const choose = () => {
-    const found = values[Number(range.value)];
-    value.textContent = typeof found === "number" ? String(Number(found.toPrecision(6))) : found;
+    value.textContent = told(values[Number(range.value)]);
     range.setAttribute("aria-valuetext", value.textContent);
+    chosen(Number(range.value));
   };
-  range.addEventListener("input", () => { choose(); chosen(Number(range.value)); });
+  range.addEventListener("input", () => { remember(id, Number(range.value)); choose(); drawRun(); followRun(); });
   choose();
+  name.append(ends);
   box.append(name, range, value);
   document.getElementById("run-sliders").append(box);
+  return (at) => { range.value = at; range.dispatchEvent(new Event("input")); };
+}
+
+/** The page's solver goes to the scene shown, where it solves one. */
+function followRun() {
+  const first = curvesChosen().find((curve) => curve.coulomb), here = run.abscissa.values[along];
+  if (!first) return;
+  const { frequency, damping, friction, limit } = first.coulomb;
+  showScene({ frequency, damping, friction, belt: Math.abs(here) / limit });
 }
 
 /** The curves at the values chosen; a quantity that a law does not have chooses nothing. */
@@ -76,10 +90,10 @@ function drawRun() {
   const curves = curvesChosen(), here = run.abscissa.values[along];
   const values = run.curves.flatMap((curve) => [...curve.mean, ...curve.low, ...curve.high]).filter((v) => v !== null);
   const spanned = spanOf(values.length ? [...values, 0] : [0, 1], 0.05);
-  const chart = drawAxes(document.getElementById("run-curves"),
+  const chart = runChart = drawAxes(byId("run-curves"),
     { label: run.abscissa.label, span: spanOf(run.abscissa.values, 0.02) }, { label: "mean friction coefficient", span: spanned });
-  chart.upright(here, { stroke: "#1b1f24" });
-  chart.level(0, { stroke: "#8c959f" });
+  chart.upright(here, { stroke: "var(--ink)" });
+  chart.level(0, { stroke: "var(--mark)" });
   const solved = coulombCurves(curves), ends = [run.abscissa.values[0], run.abscissa.values.at(-1)];
   for (const each of solved) for (const part of inUnitsOfRun(each, ends)) chart.line(part, SOLVED);
   const drawn = curves.filter((curve) => curve.look !== null);
@@ -88,7 +102,7 @@ function drawRun() {
     const look = lookOf(curve.look);
     for (const part of partsOf(curve)) chart.line(part, look);
     const at = curve.x.indexOf(here);
-    if (at >= 0 && curve.mean[at] !== null) chart.dot([here, curve.mean[at]], { fill: look.stroke, stroke: "#fff" });
+    if (at >= 0 && curve.mean[at] !== null) chart.dot([here, curve.mean[at]], { fill: look.stroke, stroke: "var(--paper)" });
   }
   // Curves of one scene have one V_{lin}, known to rounding: one mark for all of them.
   for (const kink of new Set(curves.filter((curve) => curve.kink !== null).map((curve) => Number(curve.kink.toPrecision(9))))) {
@@ -156,8 +170,13 @@ function listed(look, name, cells) {
 }
 
 run.swept.forEach((quantity, i) => {
-  addSlider(`run-${i}`, quantity.label, quantity.values, 0, (at) => { places[i] = at; drawRun(); });
+  addSlider(`run-${i}`, quantity.label, quantity.values, 0, (at) => { places[i] = at; });
 });
-addSlider("run-along", run.abscissa.label, run.abscissa.values, along, (at) => { along = at; drawRun(); });
+const middle = Math.floor((run.abscissa.values.length - 1) / 2);
+const moveAlong = addSlider("run-along", run.abscissa.label, run.abscissa.values, middle, (at) => { along = at; });
+dragged(byId("run-curves"), (x) => {
+  const far = run.abscissa.values.map((value) => Math.abs(value - runChart.valueAt(x)));
+  moveAlong(far.indexOf(Math.min(...far)));
+});
 drawRun();
 addEventListener("resize", drawRun);

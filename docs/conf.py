@@ -14,8 +14,9 @@ author = project_copyright = "The frictionlab authors"
 version = release = version_of("frictionlab")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "docstrings", "outside_pages"]
+extensions += ["finished_pages"]
 
-myst_enable_extensions = ["dollarmath", "deflist"]
+myst_enable_extensions = ["dollarmath", "deflist", "attrs_block"]
 myst_heading_anchors = 4
 
 autodoc_typehints = "none"
@@ -27,6 +28,7 @@ html_title = f"frictionlab {version}"
 MATHJAX = distribution("sphinx-mathjax-offline").locate_file("sphinx-mathjax-offline/static/mathjax")
 html_static_path = ["_static", f"{MATHJAX}/tex-svg-full.js"]
 mathjax_path = "tex-svg-full.js"
+html_favicon = "_static/favicon.svg"
 html_css_files = ["site.css"]
 html_show_sphinx = False
 html_copy_source = False

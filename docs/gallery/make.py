@@ -68,10 +68,7 @@ from [{self.name}.yaml]({study}):
 
     def card(self) -> str:
         """Its entry on the first page."""
-        return f"""### {self.question}
-
-[![{self.title}](figures/{self.name}.svg)]({self.name}.md)
-"""
+        return f"- [![{self.title}](figures/{self.name}.svg) {self.question}]({self.name}.md)\n"
 
     def excerpt(self, printed: str) -> str:
         """Of what the command says without its models: the counts, the lines that answer, the last line."""
@@ -115,14 +112,16 @@ def make(exhibit: Exhibit) -> None:
 
 
 def index(shown: list[Exhibit]) -> str:
-    """The first page: a section for each group."""
+    """The first page: the pictures of each group, then the studies in SI units with what they found."""
     names = "\n".join(exhibit.name for exhibit in shown)
     groups = {exhibit.group: [each for each in shown if each.group == exhibit.group] for exhibit in shown}
-    sections = [f"## {group}\n\n" + "\n".join(map(Exhibit.card, inside)) for group, inside in groups.items()]
+    sections = [
+        f"## {group}\n\n{{.cards}}\n{''.join(map(Exhibit.card, inside))}" for group, inside in groups.items()
+    ]
     return f"""# Gallery
 
-What have others computed? Each picture is a study of the repository and leads to a page with the answer, the study
-and what it prints. `python docs/gallery/make.py` runs them all again.
+What have others computed? Each picture leads to a page with the answer, the study and what it prints.
+`python docs/gallery/make.py` runs them all again.
 
 ```{{toctree}}
 :hidden:
@@ -130,7 +129,27 @@ and what it prints. `python docs/gallery/make.py` runs them all again.
 {names}
 ```
 
-{chr(10).join(sections)}"""
+{chr(10).join(sections)}
+{applications()}"""
+
+
+def applications() -> str:
+    """Of every study in SI units: a link, and its title, which is the finding."""
+    studies = {path: YAML(typ="safe").load(path) for path in sorted((STUDIES / "si").glob("*.yaml"))}
+    rows = [
+        f"| [{path.stem.replace('_', ' ')}](../../studies/si/{path.name}) | {read['title']} |"
+        for path, read in studies.items()
+    ]
+    return f"""## More applications in SI units
+
+Studies as one writes them from the table of a paper, with units. Each names the paper that its model is from and
+says which numbers are only typical; what it expects was found a second way too. `frictionlab run studies/si` runs
+all of them.
+
+| study | finding |
+|---|---|
+{chr(10).join(rows)}
+"""
 
 
 def main(wanted: list[str]) -> None:

@@ -50,7 +50,8 @@ def laws_command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: A
 def _list(asked: tuple[str, ...], known: Laws, as_json: bool) -> int:
     from frictionlab.registry.records import details, law_record, one_line_each
 
-    records = [law_record(each, known.named(each)) for each in asked or known.usable()]
+    aliases = known.aliases()
+    records = [law_record(each, known.named(each), aliases.get(each, ())) for each in asked or aliases]
     if as_json:
         print_records(records)
     else:
@@ -78,10 +79,9 @@ def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
     """The laws of the files given, else every law, broken ones too; one of two names of the same law."""
     from frictionlab import registry
 
+    others = {name for own in known.aliases().values() for name in own}
     names = [name for name in known.names() if not law_files or name not in registry.law_names()]
-    usable = [name for name in names if name in known.usable()]
-    first = {known.named(name): name for name in reversed(usable)}
-    return tuple(name for name in names if name not in usable or first[known.named(name)] == name)
+    return tuple(name for name in names if name not in others)
 
 
 def _test(names: Sequence[str], known: Laws, given: TestOptions) -> int:

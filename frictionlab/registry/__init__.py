@@ -88,6 +88,17 @@ class Laws:
         """The names of laws that are not broken."""
         return [name for name in self.names() if not self._wrong(name)]
 
+    def aliases(self) -> dict[str, list[str]]:
+        """Every usable law under the name most like that of its class, with its other names."""
+        names: dict[type[FrictionLaw], list[str]] = {}
+        for name in self.usable():
+            names.setdefault(self.named(name), []).append(name)
+        return {
+            first: [name for name in own if name != first]
+            for law, own in names.items()
+            for first in [min(own, key=lambda name: name.replace("-", "") != law.__name__.lower())]
+        }
+
     def broken(self) -> list[str]:
         """A message for every broken law and for every plugin with the name of a law of frictionlab."""
         wrong = [self._wrong(name) for name in self.names()]

@@ -18,10 +18,11 @@ from frictionlab.registry.bibliography import publications
 _LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 
 
-def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
-    """A law under this name: its description, parameters and declarations."""
+def law_record(name: str, law: type[FrictionLaw], aliases: Sequence[str] = ()) -> dict[str, Any]:
+    """A law under this name: its other names, description, parameters and declarations."""
     return {
         "name": name,
+        "aliases": list(aliases),
         "description": description(law),
         "parameters": _parameters(law),
         "declares": _declared(law),
@@ -142,9 +143,11 @@ def meaning(record: type[BaseModel], name: str) -> str:
 
 def one_line_each(records: Sequence[dict[str, Any]]) -> str:
     """Laws or methods by name and the first line of their docstring."""
-    width = max(len(record["name"]) for record in records)
+    names = [", ".join([record["name"], *record.get("aliases", ())]) for record in records]
+    width = max(map(len, names))
     return "\n".join(
-        f"{record['name']:{width}}  {record['description'].partition(chr(10))[0]}" for record in records
+        f"{name:{width}}  {record['description'].partition(chr(10))[0]}"
+        for name, record in zip(names, records, strict=True)
     )
 
 

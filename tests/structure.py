@@ -17,7 +17,7 @@ class Tree:
         self.paths = {
             self._name(path): path
             for path in sorted(self.house.rglob("*.py"))
-            if path != self.house / "__init__.py"
+            if path.parent != self.house or path.stem[0] != "_"
         }
         self.trees = {name: ast.parse(path.read_text()) for name, path in self.paths.items()}
 

@@ -17,7 +17,7 @@ from frictionlab.columns import typeset
 from frictionlab.quantities import Written
 from frictionlab.report.facts import Facts
 from frictionlab.report.markup import html, symbol_html, unit_html, word_html
-from frictionlab.report.question import given_of, values_listed
+from frictionlab.report.question import given_of, is_taken, values_listed
 from frictionlab.report.tables import joined_values, setting
 from frictionlab.results.words import counted
 
@@ -147,7 +147,7 @@ def _held_and_missing(run: Facts) -> Iterator[Markup]:
         if isinstance(value, Written)
         else setting(name, value)
         for name, value in given_of(study).items()
-        if name not in study.sweep
+        if name not in study.sweep and not is_taken(study, name)
     ]
     if fixed:
         yield Markup("Held fixed: {}").format(Markup(", ").join(fixed))

@@ -16,6 +16,7 @@ from frictionlab.report.tables import Cell, Grid, grid, number
 from frictionlab.results.words import in_words
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
+from frictionlab.scene.springs_in_si import own_length
 from frictionlab.scene.waveforms import SINE, as_fraction
 from frictionlab.study import GridValue, Study
 from frictionlab.study.axes import FRICTION
@@ -135,11 +136,24 @@ def scene_grid(study: Study) -> Grid:
     rows = [
         [
             *_named(shown_name(study, name)),
-            "swept" if study.sweep.get(name) is not None else shown_number(study, name, value),
+            "swept" if study.sweep.get(name) is not None else _told_value(study, name, value),
         ]
         for name, value in given_of(study).items()
     ]
     return grid("The scene", ["quantity", "symbol", "value"], rows)
+
+
+def _told_value(study: Study, name: str, value: Any) -> str:
+    told = shown_number(study, name, value)
+    return (
+        f"{told}, taken from the others, to scale nondimensional columns" if is_taken(study, name) else told
+    )
+
+
+def is_taken(study: Study, name: str) -> bool:
+    """Whether an input is the length scale that a scene has by itself."""
+    body = study.scene.dimensional
+    return body is not None and name.endswith(".length_m") and body.length_m == own_length(body)
 
 
 def given_of(study: Study) -> dict[str, Any]:

@@ -546,7 +546,7 @@ def surroundings(tmp_path: Path) -> dict[str, str]:
     return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, places))}
 
 
-COMMAND = [sys.executable, "-c", "import sys; from frictionlab.cli import main; sys.exit(main())"]
+COMMAND = [sys.executable, "-m", "frictionlab"]
 
 
 def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(

@@ -478,6 +478,21 @@ def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
         assert [row[1] for row in page.table(name)[1:]] == ["F1 = 5 N", "F1 = 6 N"]
 
 
+def test_a_length_that_was_left_out_is_told_as_taken(ran: Runner) -> None:
+    body = {"mass": "3 kg", "stiffness": "300 N/m", "damping": "2 N s/m", "belt_speed": "0.1 m/s"}
+    body |= {"belt_vibration": {"frequency": "10 rad/s", "displacement_amplitude": "10 mm"}}
+    saved = [ran(name, scene={"dimensional": body | given}, sweep={}) for name, given in LENGTHS.items()]
+    told = [page_of(each).table("The scene") for each in saved]
+
+    assert ["length scale [m]", "L", "0.01, taken from the others, to scale nondimensional columns"] in told[
+        0
+    ]
+    assert ["length scale [m]", "L", "0.02"] in told[1]
+
+
+LENGTHS: dict[str, dict[str, float]] = {"left_out": {}, "given": {"length_m": 0.02}}
+
+
 def test_a_run_without_a_sweep_has_no_figures_and_no_heading_for_them(ran: Runner) -> None:
     page = page_of(ran(sweep={}))
 

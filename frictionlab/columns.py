@@ -325,6 +325,8 @@ CURVES: dict[str, str] = {
     "reason": "why a measure is empty",
 }
 """The columns of the table of curves after the inputs."""
+MEASURES: tuple[str, ...] = tuple(name for name in CURVES if f"{name}_error" in CURVES)
+"""Those that measure a curve."""
 
 ONSETS: dict[str, str] = {
     "onset": "stick_begins, stick_ends, reversal_ends or multiplier_leaves, read along increasing belt speed",

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import BELT_SPEED, INPUTS, belt_speed
+from frictionlab.columns import BELT_SPEED, INPUTS, MEASURES, belt_speed, given
 from frictionlab.printable import with_error
 from frictionlab.results.words import counted, in_words
-from frictionlab.study import Expectation
+from frictionlab.study import Expectation, Wanted
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.
 _SAME = 1e-9
@@ -32,7 +34,9 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
 
     curves: the table of curves that goes with the table.
     """
-    rows = _matching(expectation.where, table if expectation.shape is None else curves)
+    of_curves = expectation.shape is not None or expectation.column in MEASURES
+    whole = curves if of_curves else table
+    rows = _matching(expectation.where, whole)
     if rows.empty:
         found = Verdict(False, "no row of the table matches")
     elif expectation.shape is not None:
@@ -41,26 +45,36 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
         found = _difference(expectation, rows)
     elif expectation.status is not None:
         found = _status(expectation.status, rows)
+    elif expectation.minus is not None or expectation.over is not None:
+        found = _beside(expectation, rows, whole)
     else:
         found = _comparison(expectation, rows)
     return Verdict(found.passed, f"{_about(expectation)}: {found.sentence}")
 
 
-def _matching(where: dict[str, str | float], table: pd.DataFrame) -> pd.DataFrame:
+def _matching(where: dict[str, Wanted], table: pd.DataFrame) -> pd.DataFrame:
+    if any(column not in table for column in where):
+        return table.iloc[:0]
     chosen = np.ones(len(table), np.bool_)
     for column, wanted in where.items():
-        if column not in table:
-            return table.iloc[:0]
-        if isinstance(wanted, str):
-            chosen &= (table[column] == wanted).to_numpy(dtype=bool)
-        else:
-            values = table[column].to_numpy(dtype=float)
-            chosen &= np.abs(values - wanted) <= _SAME * np.maximum(np.abs(values), abs(wanted))
+        chosen &= _is(wanted, table[column])
     return table[chosen]
 
 
+def _is(wanted: Wanted, values: pd.Series) -> Any:
+    """Which values are as wanted."""
+    if isinstance(wanted, list):
+        return np.any([_is(one, values) for one in wanted], axis=0)
+    if isinstance(wanted, str):
+        return (values == wanted).to_numpy(dtype=bool)
+    numbers = values.to_numpy(dtype=float)
+    ends = wanted if isinstance(wanted, dict) else {"from": wanted, "to": wanted}
+    slack = _SAME * np.abs(numbers)
+    return (ends.get("from", -np.inf) - slack <= numbers) & (numbers <= ends.get("to", np.inf) + slack)
+
+
 def _about(expectation: Expectation) -> str:
-    where = ", ".join(f"{column} {in_words(value)}" for column, value in expectation.where.items())
+    where = _chosen(expectation.where)
     return " ".join(
         part
         for part in (
@@ -70,6 +84,17 @@ def _about(expectation: Expectation) -> str:
         )
         if part
     )
+
+
+def _chosen(where: dict[str, Wanted]) -> str:
+    """What selects rows, in words."""
+    return ", ".join(f"{column} {_wanted(value)}" for column, value in where.items())
+
+
+def _wanted(value: Wanted) -> str:
+    if isinstance(value, dict):
+        return " ".join(f"{end} {in_words(number)}" for end, number in value.items())
+    return " or ".join(map(in_words, value)) if isinstance(value, list) else in_words(value)
 
 
 def _claim(expectation: Expectation) -> str:
@@ -82,7 +107,9 @@ def _claim(expectation: Expectation) -> str:
         return f"{expectation.shape} by {_BY[expectation.measure or 'area']}"
     within = f" within {in_words(expectation.within)}" if expectation.within is not None else ""
     name, value = _comparator(expectation)
-    return f"{expectation.column} {name} {in_words(value)}{within}"
+    beside = (("less", expectation.minus), ("over", expectation.over))
+    of = "".join(f" {how} that where {_chosen(other)}" for how, other in beside if other is not None)
+    return f"{expectation.column}{of} {name} {in_words(value)}{within}"
 
 
 def _comparator(expectation: Expectation) -> tuple[str, float]:
@@ -137,25 +164,48 @@ def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     assert expectation.max_difference is not None
     assert expectation.below is not None
     first, second = (rows[rows["method"] == label] for label in expectation.max_difference)
-    keys = _inputs(rows)
-    pairs = first.merge(second, on=keys, suffixes=("", " other"), how="outer")
+    pairs = _pairs(first, second, {"method"}, "mean_friction")
     if pairs.empty:
         return Verdict(False, "neither method has a row that matches")
-    differences = (pairs["mean_friction"] - pairs["mean_friction other"]).abs()
-    missing = int(differences.isna().sum())
-    if missing:
-        return Verdict(False, f"a mean is missing in {missing} of {len(pairs)} pairs of rows")
-    worst = float(differences.max())
+    if missing := _missing(pairs, "mean_friction"):
+        return missing
+    worst = float((pairs["mean_friction"] - pairs["mean_friction other"]).abs().max())
     return Verdict(worst < expectation.below, f"{in_words(worst)}{_largest_error(pairs, 'pair')}")
 
 
-def _inputs(rows: pd.DataFrame) -> list[str]:
-    """The input columns, without the method."""
-    return [
-        str(column)
-        for column in rows.columns
-        if (column in INPUTS and column != "method") or str(column).startswith(("scene.", "law."))
-    ]
+def _beside(expectation: Expectation, rows: pd.DataFrame, table: pd.DataFrame) -> Verdict:
+    """The column less, or over, that of the rows with other inputs; rows that have these themselves are left out."""
+    assert expectation.column is not None
+    differ = expectation.minus or expectation.over or {}
+    equal = {name: value for name, value in expectation.where.items() if not _differs(name, differ)}
+    others = _matching(equal | differ, table)
+    rows = rows.drop(others.index, errors="ignore")
+    if others.empty or rows.empty:
+        return Verdict(False, f"no row of the table matches {_chosen(differ)}, or none beside it")
+    pairs = _pairs(rows, others, differ, expectation.column)
+    if missing := _missing(pairs, expectation.column):
+        return missing
+    own, other = pairs[expectation.column], pairs[f"{expectation.column} other"]
+    compared = own - other if expectation.minus is not None else own / other
+    return _comparison(expectation, pairs.assign(**{expectation.column: compared}))
+
+
+def _pairs(rows: pd.DataFrame, others: pd.DataFrame, differ: Container[str], column: str) -> pd.DataFrame:
+    """Rows beside those whose inputs are equal but for those that differ, the others' number beside their own."""
+    keys = [name for name in (*INPUTS, *given(rows.columns)) if name in rows and not _differs(name, differ)]
+    return rows.merge(others[[*keys, column]], on=keys, suffixes=("", " other"), how="outer")
+
+
+def _differs(name: str, differ: Container[str]) -> bool:
+    """Whether an input is one that differs, or follows from the law where that does."""
+    return name in differ or ("law" in differ and (name == "kind" or name.startswith("law.")))
+
+
+def _missing(pairs: pd.DataFrame, column: str) -> Verdict | None:
+    """The verdict on pairs of rows of which some lack a row or its number."""
+    missing = int(pairs[[column, f"{column} other"]].isna().any(axis=1).sum())
+    told = f"{column} is missing in {missing} of {len(pairs)} pairs of rows"
+    return Verdict(False, told) if missing else None
 
 
 def _first(rows: pd.DataFrame) -> str:
@@ -165,7 +215,8 @@ def _first(rows: pd.DataFrame) -> str:
     speed = belt_speed(rows)
     unit = "" if speed == BELT_SPEED else " m/s"
     scene = f" at belt speed {in_words(row[speed])}{unit}" if speed in rows else ""
-    return f"the row of {row['law']} by {row['method']}{scene}, {row['status']}{reason}"
+    status = f", {row['status']}" if "status" in row else ""  # curves have none
+    return f"the row of {row['law']} by {row['method']}{scene}{status}{reason}"
 
 
 def _largest_error(rows: pd.DataFrame, what: str) -> str:

@@ -109,7 +109,8 @@ def _breaks(laws: Sequence[FrictionLaw], scene: Scene, along: SpeedRange) -> Flo
 def _named(study: Study, along: SpeedRange) -> Floats:
     """The belt speeds in the range that the study expects something of."""
     path = next(path for path, each in study.ranges.items() if each is along)
-    found = [each.where[path] for each in study.expect if path in each.where]
+    wanted = [each.where[path] for each in study.expect if path in each.where]
+    found = [one for each in wanted for one in (each if isinstance(each, list) else [each])]
     return np.array([each for each in found if isinstance(each, float) and along.start <= each <= along.stop])
 
 

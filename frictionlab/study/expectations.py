@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,15 +11,16 @@ from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
 from frictionlab.mistakes.validation import checked_value, placed, record_at
 from frictionlab.scene.as_written import in_si
 from frictionlab.scene.scene import Scene
-from frictionlab.study.parts import Expectation
+from frictionlab.study.parts import Expectation, Wanted
 from frictionlab.study.written import column_of
 from frictionlab.units.text import in_units
 
 EXPECTATION_KEYS = (
-    *("where", "column", "equals", "below", "above", "within"),
+    *("where", "minus", "over", "column", "equals", "below", "above", "within"),
     *("status", "max_difference", "shape", "measure", "because"),
 )
 _COMPARISONS = ("equals", "below", "above")
+_ENDS = ("from", "to")
 
 
 @dataclass(frozen=True)
@@ -55,32 +56,49 @@ def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectat
     for key in given:
         if key not in EXPECTATION_KEYS:
             notes.unknown_key((*path, key), EXPECTATION_KEYS)
-    where = _where(given.get("where", {}), (*path, "where"), table, notes)
+    where = _where(given.get("where", {}), (*path, "where"), table, notes, _wanted)
     said = _claim(given, path, table, notes)
     if "because" in given:
         said["because"] = notes.text(given["because"], (*path, "because"))
     return None if notes.below(path) else Expectation(where=where, **said)
 
 
-def _where(given: Any, path: Path, table: Table, notes: Notes) -> dict[str, str | float]:
-    """The input columns and values that select rows."""
-    where: dict[str, str | float] = {}
+def _where(
+    given: Any, path: Path, table: Table, notes: Notes, read: Callable[..., Wanted | None]
+) -> dict[str, Wanted]:
+    """The input columns and values that select rows; read: of one of them what it must be."""
+    where: dict[str, Wanted] = {}
     for key, value in (notes.mapping(given, path) or {}).items():
-        name = column_of(key)
-        if key in table.texts:
-            found: str | float | None = _known_text(value, (*path, key), table.texts[key], notes)
-        elif key in table.words:
-            found = _word_of_scene(value, (*path, key), table.words[key], notes)
-        elif name in table.numbers:
-            found = _number(_written(key, name, value, table), (*path, key), notes)
-        else:
+        if key not in table.texts and key not in table.words and column_of(key) not in table.numbers:
             names = (*table.texts, *table.numbers, *table.words)
             hint = did_you_mean(key, names)
             notes.on_key((*path, key), "is no input column of this study's table", hint)
-            continue
-        if found is not None:
-            where[name] = found
+        elif (found := read(value, (*path, key), key, table, notes)) is not None:
+            where[column_of(key)] = found
     return where
+
+
+def _wanted(given: Any, path: Path, key: str, table: Table, notes: Notes) -> Wanted | None:
+    """What an input of rows must be: one value, one of several, or a number within a range."""
+    if isinstance(given, list):
+        read = [_input(value, (*path, index), key, table, notes) for index, value in enumerate(given)]
+        return [value for value in read if value is not None]
+    if not isinstance(given, dict) or key in table.words:
+        return _input(given, path, key, table, notes)
+    notes.mapping(given, path, _ENDS)
+    if not given:
+        notes.add(path, "give from, to or both")
+    ends = {end: _input(given[end], (*path, end), key, table, notes) for end in _ENDS if end in given}
+    return {end: value for end, value in ends.items() if isinstance(value, float)}
+
+
+def _input(value: Any, path: Path, key: str, table: Table, notes: Notes) -> str | float | None:
+    """One value of an input column."""
+    if key in table.texts:
+        return _known_text(value, path, table.texts[key], notes)
+    if key in table.words:
+        return _word_of_scene(value, path, key, table.words[key], notes)
+    return _number(_written(key, column_of(key), value, table), path, column_of(key), notes)
 
 
 def _written(key: str, column: str, value: Any, table: Table) -> Any:
@@ -95,11 +113,13 @@ def _written(key: str, column: str, value: Any, table: Table) -> Any:
     )
 
 
-def _word_of_scene(value: Any, path: Path, known: tuple[str, ...] | None, notes: Notes) -> str | None:
+def _word_of_scene(
+    value: Any, path: Path, column: str, known: tuple[str, ...] | None, notes: Notes
+) -> str | None:
     """A word of the scene, or a waveform as the scene gives it or as the table does: as it stands in the table."""
     if isinstance(value, str) and value in (known or ()):
         return value
-    held, what, hint = _as_in_scene(str(path[-1]), value)
+    held, what, hint = _as_in_scene(column, value)
     if what is not None:
         notes.add(*placed(path, what, value), hint)
         return None
@@ -108,9 +128,8 @@ def _word_of_scene(value: Any, path: Path, known: tuple[str, ...] | None, notes:
     return str(held)
 
 
-def _number(value: Any, path: Path, notes: Notes) -> float | None:
+def _number(value: Any, path: Path, column: str, notes: Notes) -> float | None:
     """A number, or what the scene takes for one, such as the ratio 3/2."""
-    column = str(path[-1])
     if isinstance(value, str) and column.startswith("scene."):
         held, what, _ = _as_in_scene(column, value)
         if what is None:
@@ -155,17 +174,22 @@ def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
 
 
 def _shape(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
-    """A verdict on whole curves, which a belt speed cannot select."""
+    """A verdict on whole curves."""
     _only(given, ("shape", "measure"), path, notes)
-    where = given.get("where")
-    for key in where if isinstance(where, dict) else ():
-        if key in columns.BELT_SPEEDS:
-            notes.on_key((*path, "where", key), "a shape belongs to a whole curve: leave the belt speed out")
-    if not any(name in columns.BELT_SPEEDS for name in table.swept):
-        notes.on_key((*path, "shape"), f"a shape needs a curve: sweep {table.belt_speed}")
+    _of_curves(given, "shape", path, table, notes)
     measure = notes.one_of(given.get("measure", "area"), (*path, "measure"), tuple(columns.SHAPES))
     shapes = columns.SHAPES.get(str(measure), columns.SHAPES["area"])
     return {"shape": notes.one_of(given["shape"], (*path, "shape"), shapes), "measure": measure}
+
+
+def _of_curves(given: dict[str, Any], key: str, path: Path, table: Table, notes: Notes) -> None:
+    """Note what does not go with whole curves: belt speeds that select rows, or none swept."""
+    where = given.get("where")
+    for name in where if isinstance(where, dict) else ():
+        if name in columns.BELT_SPEEDS:
+            notes.on_key((*path, "where", name), "a shape belongs to a whole curve: leave the belt speed out")
+    if not any(name in columns.BELT_SPEEDS for name in table.swept):
+        notes.on_key((*path, key), f"a shape needs a curve: sweep {table.belt_speed}")
 
 
 def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
@@ -176,6 +200,8 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
         notes.add((*path, "column"), "required key is missing (or give status, max_difference or shape)")
     else:
         column = _column(given["column"], (*path, "column"), table, notes)
+    if column in columns.MEASURES:
+        _of_curves(given, "column", path, table, notes)
     chosen = [key for key in _COMPARISONS if key in given]
     if len(chosen) != 1:
         notes.add(path, f"give exactly one of equals, below and above, got {' and '.join(chosen) or 'none'}")
@@ -186,11 +212,15 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
     said: dict[str, Any] = {key: notes.number(given[key], (*path, key)) for key in chosen}
     if "within" in given or "equals" in given:
         said["within"] = _positive(given, "within", path, notes)
+    beside = [key for key in ("minus", "over") if key in given]
+    if len(beside) > 1:
+        notes.on_key((*path, "over"), "give minus or over, not both")
+    said |= {key: _where(given[key], (*path, key), table, notes, _input) for key in beside}
     return {"column": column, **said}
 
 
 def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
-    name = result_column(given, path, table.results, notes)
+    name = result_column(given, path, (*table.results, *columns.MEASURES), notes)
     if name in columns.TEXT:
         notes.add(path, f"'{name}' holds text; only numbers can be compared")
     return name

@@ -109,16 +109,23 @@ class MethodChoice:
         return {"kind": self.name, **natural(self.parameters), **label}
 
 
+Wanted = str | float | list[str | float] | dict[str, float]
+"""What an input must be: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
+
+
 @dataclass(frozen=True)
 class Expectation:
     """A claim of a study about its table; exactly one of the six comparisons is set.
 
-    where: input column -> value, selects the rows. equals (needs within), below, above: of ``column``.
+    where: input column -> value, selects the rows. equals (needs within), below, above: of ``column``, a result or
+    a measure of curves; of it less, or over, that of the row with the inputs ``minus`` or ``over`` and equal others.
     status: of those rows. max_difference: two method labels whose mean_friction differs by under ``below``.
     shape: of the curves those rows make, by ``measure``.
     """
 
-    where: dict[str, str | float]
+    where: dict[str, Wanted]
+    minus: dict[str, Wanted] | None = None
+    over: dict[str, Wanted] | None = None
     column: str | None = None
     equals: float | None = None
     below: float | None = None

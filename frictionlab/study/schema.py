@@ -45,9 +45,13 @@ _KEYS = {
     "label": "name of its rows; kind where left out",
     FRICTION: "friction coefficients: mu or mu_kinetic of every law, mu_static keeping its ratio",
     LINKED: "lists that advance together, by dotted path; entries and other sweeps make the grid",
-    "where": "the rows that are meant, by the values of input columns; all where left out",
+    "where": "the rows that are meant, by input columns: a value, a list, or from and to; all where left out",
+    "minus": "what is compared is the column less that of the row with these inputs and equal others",
+    "over": "what is compared is the column over that of the row with these inputs and equal others",
+    "from": "the least number that is meant",
+    "to": "the largest number that is meant",
     "because": "why that is expected, such as a source",
-    "column": "result column that is compared",
+    "column": "column of the table or of curves that is compared",
     "within": "absolute difference that equals lets pass",
     "equals": "the value of the column, but for within",
     "below": "the column, or the largest difference, is less than this",
@@ -249,11 +253,21 @@ def _sweep() -> dict[str, Any]:
 
 def _expectations() -> list[dict[str, Any]]:
     """A column against a number, a status, the difference of two methods, or the shape of a curve."""
-    where = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
-    shared: dict[str, Any] = {"where": where, "because": _TEXT}
-    numeric = [name for name in (*columns.RESULTS, *columns.SI) if name not in columns.TEXT]
-    column = {"column": {"enum": numeric}, "within": {"anyOf": [_POSITIVE, _WITH_UNIT]}}
     number = {"anyOf": [_NUMBER, _WITH_UNIT]}
+    within = _closed_object({"from": number, "to": number}, []) | {"minProperties": 1}
+    wanted = {"anyOf": [*_WORD_OR_NUMBER["anyOf"], {"type": "array", "items": _WORD_OR_NUMBER}, within]}
+    shared: dict[str, Any] = {
+        "where": {"type": "object", "additionalProperties": wanted},
+        "because": _TEXT,
+    }
+    known = (*columns.RESULTS, *columns.SI, *columns.MEASURES)
+    other = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
+    column = {
+        "column": {"enum": [name for name in known if name not in columns.TEXT]},
+        "minus": other,
+        "over": other,
+        "within": {"anyOf": [_POSITIVE, _WITH_UNIT]},
+    }
     statuses = [status for status in columns.STATUSES if status != "killed"]
     pair = {"type": "array", "minItems": 2, "maxItems": 2, "uniqueItems": True, "items": _TEXT}
     return [

@@ -158,8 +158,9 @@ class Study(StudyGrid):
 
     def selected(self) -> frozenset[str]:
         """The result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
-        judged = [each.column for each in self.expect if each.column is not None]
-        of_shape = columns.OF_SHAPE if any(each.shape is not None for each in self.expect) else ()
+        judged = [each.column for each in self.expect if each.column and each.column not in columns.MEASURES]
+        of_curves = any(each.shape or each.column in columns.MEASURES for each in self.expect)
+        of_shape = columns.OF_SHAPE if of_curves else ()
         return columns.selected(self.columns, [*judged, *of_shape])
 
     def asks_for(self, group: str) -> bool:

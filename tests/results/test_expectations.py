@@ -157,4 +157,92 @@ def test_a_missing_partner_fails_and_is_told(table: pd.DataFrame) -> None:
     verdict = judge(Expectation(where={}, max_difference=("exact", "shooting"), below=1.0), table, CURVES)
 
     assert not verdict.passed
-    assert "a mean is missing in 1 of 2 pairs" in verdict.sentence
+    assert "mean_friction is missing in 1 of 2 pairs" in verdict.sentence
+
+
+LAWS = pd.DataFrame(
+    {
+        "law": ["coulomb", "coulomb", "dahl", "dahl", "dahl", "dahl"],
+        "kind": ["coulomb", "coulomb", "dahl", "dahl", "dahl", "dahl"],
+        "method": ["auto"] * 6,
+        "scene.belt_speed": [1.0, 2.0] * 3,
+        "law.mu": [0.4] * 6,
+        "law.presliding_length": [np.nan, np.nan, 1.0, 1.0, 10.0, 10.0],
+        "mean_friction": [0.1, 0.2, 0.12, 0.21, 0.3, 0.15],
+        "status": ["ok"] * 6,
+        "reason": [""] * 6,
+    }
+)
+COULOMB = {"law": "coulomb"}
+STIFF = {"law": "dahl", "law.presliding_length": 1.0}
+SOFT = {"law": "dahl", "law.presliding_length": 10.0}
+
+
+@pytest.mark.parametrize(
+    ("where", "claim", "passed", "found"),
+    [
+        ({"law": "dahl"}, {"minus": COULOMB, "above": -0.06}, True, "-0.05 in the worst of 4 rows"),
+        ({"law": "dahl"}, {"minus": COULOMB, "above": 0.0}, False, "-0.05 in the worst of 4 rows"),
+        (STIFF | {"scene.belt_speed": 1.0}, {"over": COULOMB, "above": 1.19}, True, "1.2"),
+        (STIFF | {"scene.belt_speed": 1.0}, {"over": COULOMB, "above": 1.21}, False, "1.2"),
+        (SOFT | {"scene.belt_speed": {"from": 2.0}}, {"minus": COULOMB, "below": 0.0}, True, "-0.05"),
+        (SOFT | {"scene.belt_speed": {"to": 1.9}}, {"minus": COULOMB, "below": 0.0}, False, "0.2"),
+        (
+            SOFT | {"scene.belt_speed": [1.0, 2.0]},
+            {"minus": STIFF, "above": 0.0},
+            False,
+            "-0.06 in the worst of 2 rows",
+        ),
+        # those that are subtracted are not compared with themselves
+        ({}, {"minus": COULOMB, "above": -0.06}, True, "-0.05 in the worst of 4 rows"),
+        (
+            COULOMB,
+            {"minus": COULOMB, "above": -1.0},
+            False,
+            "no row of the table matches law coulomb, or none beside it",
+        ),
+        (
+            STIFF,
+            {"minus": {"law": "lugre"}, "above": -1.0},
+            False,
+            "no row of the table matches law lugre, or none beside it",
+        ),
+        # those of another law do not tell what is missing beside Coulomb friction
+        (
+            {},
+            {"minus": {"law.presliding_length": 1.0}, "above": -1.0},
+            False,
+            "is missing in 2 of 4 pairs of rows",
+        ),
+    ],
+)
+def test_rows_are_compared_with_those_of_other_inputs(
+    where: dict[str, Any], claim: dict[str, Any], passed: bool, found: str
+) -> None:
+    verdict = judge(Expectation(where=where, column="mean_friction", **claim), LAWS, CURVES)
+
+    assert verdict.passed is passed
+    assert verdict.sentence.endswith(found)
+
+
+@pytest.mark.parametrize(
+    ("where", "claim", "passed", "found"),
+    [
+        ({"method": "exact"}, {"below": -0.1}, True, "shape_area below -0.1 where method exact: -0.2"),
+        ({"method": ["exact", "shooting"]}, {"below": 0.0}, False, "0.1 in the worst of 2 rows"),
+        ({"method": "march"}, {"below": 0.0}, False, "slip still reverses at the highest belt speed, 2"),
+        (
+            {"method": "shooting"},
+            {"minus": {"method": "exact"}, "above": 0.29},
+            True,
+            "method exact above 0.29",
+        ),
+    ],
+)
+def test_a_measure_of_curves_is_compared_as_a_column_is(
+    where: dict[str, Any], claim: dict[str, Any], passed: bool, found: str
+) -> None:
+    verdict = judge(Expectation(where=where, column="shape_area", **claim), TABLE, CURVES)
+
+    assert verdict.passed is passed
+    assert found in verdict.sentence

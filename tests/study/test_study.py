@@ -11,6 +11,7 @@ import pytest
 from study_mistakes import EDITS, GOOD, HINTS
 
 from frictionlab import registry
+from frictionlab.columns import OF_SHAPE
 from frictionlab.study import Expectation, Study, StudyError, load_study, parse_study
 from frictionlab.study.schema import schema
 
@@ -98,6 +99,39 @@ def test_a_shape_is_expected_by_area_unless_it_says_else_and_loads_back() -> Non
         ("concave", "initial"),
     ]
     assert parse_study(found.resolved()) == found
+
+
+def test_expectations_of_several_rows_and_against_others_load_back() -> None:
+    sweep = {"sweep": {"scene.belt_speed": [1, 2, 3]}}
+    where = {"law": ["coulomb"], "scene.belt_speed": {"from": 1, "to": 2}}
+    claims = [
+        {"where": where, "minus": {"scene.belt_speed": 3}, "column": "mean_friction", "below": 0},
+        {"over": {"law": "coulomb"}, "column": "shape_area", "above": 1},
+    ]
+    found = parse_study(good() | sweep | {"expect": claims})
+
+    assert found.expect[0].where == {"law": ["coulomb"], "scene.belt_speed": {"from": 1.0, "to": 2.0}}
+    assert [(claim.minus, claim.over) for claim in found.expect] == [
+        ({"scene.belt_speed": 3.0}, None),
+        (None, {"law": "coulomb"}),
+    ]
+    assert "shape_area" not in found.selected()
+    assert set(OF_SHAPE) <= found.selected()
+    assert parse_study(found.resolved()) == found
+
+
+def test_a_range_of_rows_and_their_difference_may_have_units() -> None:
+    scene = {
+        "normal_load": "2 N",
+        "belt_speed": "1 mm/s",
+        "slip": {"velocity_amplitude": "1 mm/s", "frequency": "1 Hz"},
+    }
+    where = {"scene.dimensional.belt_speed": {"from": "1 mm/s"}}
+    claim = {"where": where, "minus": {"law": "coulomb"}, "column": "mean_friction_N", "below": "3 mN"}
+    found = parse_study(good() | {"scene": {"dimensional": scene}, "expect": [claim]}).expect[0]
+
+    assert found.where == {"scene.dimensional.belt_speed_m_per_s": {"from": 0.001}}
+    assert found.below == 0.003
 
 
 def test_a_shape_asks_for_the_belt_speed_of_its_scene_also_beside_other_mistakes() -> None:

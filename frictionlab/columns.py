@@ -325,7 +325,7 @@ CURVES: dict[str, str] = {
     "reason": "why a measure is empty",
 }
 """The columns of the table of curves after the inputs."""
-MEASURES: tuple[str, ...] = tuple(name for name in CURVES if f"{name}_error" in CURVES)
+CURVE_MEASURES: tuple[str, ...] = tuple(name for name in CURVES if f"{name}_error" in CURVES)
 """Those that measure a curve."""
 
 ONSETS: dict[str, str] = {

@@ -13,7 +13,7 @@ from typing import Any
 
 from frictionlab.cli.output import INTERRUPTED, print_message, tell_stopping
 
-PATIENCE = 3.0
+NOTICED_WITHIN = 3.0
 """Seconds in which the main thread may notice by itself."""
 SOON = 0.1
 """Seconds after which an interrupt that was lost is sent again."""
@@ -54,7 +54,7 @@ def prompt_interrupts() -> Iterator[None]:
 
 def _watch(told: int, noticed: threading.Event) -> None:
     while number := os.read(told, 1):
-        if number[0] == signal.SIGINT and not noticed.wait(PATIENCE):
+        if number[0] == signal.SIGINT and not noticed.wait(NOTICED_WITHIN):
             print_message("interrupted")
             os._exit(INTERRUPTED)
     os.close(told)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import BELT_SPEED, INPUTS, MEASURES, belt_speed, given
+from frictionlab.columns import BELT_SPEED, CURVE_MEASURES, INPUTS, belt_speed, given
 from frictionlab.printable import with_error
 from frictionlab.results.words import counted, in_words
 from frictionlab.study import Expectation, Wanted
@@ -34,7 +34,7 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
 
     curves: the table of curves that goes with the table.
     """
-    of_curves = expectation.shape is not None or expectation.column in MEASURES
+    of_curves = expectation.shape is not None or expectation.column in CURVE_MEASURES
     whole = curves if of_curves else table
     rows = _matching(expectation.where, whole)
     if rows.empty:

@@ -200,7 +200,7 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
         notes.add((*path, "column"), "required key is missing (or give status, max_difference or shape)")
     else:
         column = _column(given["column"], (*path, "column"), table, notes)
-    if column in columns.MEASURES:
+    if column in columns.CURVE_MEASURES:
         _of_curves(given, "column", path, table, notes)
     chosen = [key for key in _COMPARISONS if key in given]
     if len(chosen) != 1:
@@ -220,7 +220,7 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
 
 
 def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
-    name = result_column(given, path, (*table.results, *columns.MEASURES), notes)
+    name = result_column(given, path, (*table.results, *columns.CURVE_MEASURES), notes)
     if name in columns.TEXT:
         notes.add(path, f"'{name}' holds text; only numbers can be compared")
     return name

@@ -260,7 +260,7 @@ def _expectations() -> list[dict[str, Any]]:
         "where": {"type": "object", "additionalProperties": wanted},
         "because": _TEXT,
     }
-    known = (*columns.RESULTS, *columns.SI, *columns.MEASURES)
+    known = (*columns.RESULTS, *columns.SI, *columns.CURVE_MEASURES)
     other = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
     column = {
         "column": {"enum": [name for name in known if name not in columns.TEXT]},

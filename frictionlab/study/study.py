@@ -158,8 +158,10 @@ class Study(StudyGrid):
 
     def selected(self) -> frozenset[str]:
         """The result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
-        judged = [each.column for each in self.expect if each.column and each.column not in columns.MEASURES]
-        of_curves = any(each.shape or each.column in columns.MEASURES for each in self.expect)
+        judged = [
+            each.column for each in self.expect if each.column and each.column not in columns.CURVE_MEASURES
+        ]
+        of_curves = any(each.shape or each.column in columns.CURVE_MEASURES for each in self.expect)
         of_shape = columns.OF_SHAPE if of_curves else ()
         return columns.selected(self.columns, [*judged, *of_shape])
 

@@ -74,7 +74,7 @@ ARROWS = {
             "quantities registry results scene study theory units"
         ),
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
-        "charts": "columns printable study units",
+        "charts": "columns printable scene study theory units",
         "report": "charts columns printable quantities registry results runner scene study units",
         "notebook": "charts columns report results runner scene study units",
         "explore": "charts columns report results runner units",

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import Family, family_of
+from frictionlab.charts.curves import LEAST_VISIBLE, Family, family_of
 from frictionlab.charts.derived import differences, normalized, reference_law
 from frictionlab.charts.kept_figures import harmonic_figures, orbit_figures
 from frictionlab.charts.maps import MapFigure, map_of, map_of_curves
@@ -23,6 +23,7 @@ from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.sweeps import plain
+from frictionlab.charts.v_lin import v_lin_of
 from frictionlab.columns import SI, by_plain_names, plain_word, symbol, word
 from frictionlab.printable import printable
 from frictionlab.study import Study
@@ -58,7 +59,7 @@ BIFURCATION = "Every state that motions end in, over belt speed"
 MOST_UNASKED = 3
 """Figures that are drawn where no more are asked for."""
 IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
-SHARES = {"mean_friction": "normalized_friction"}
+IN_SHARES = {"mean_friction": "normalized_friction"}
 """What is drawn in place of a column where axes are shares."""
 Drawer = Callable[[Heading], Figure]
 
@@ -76,6 +77,7 @@ class FigureData:
 
     curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``. units: in which the numbers of a
     scene in SI units were written; tables given are then in these. words: for labels of laws and methods.
+    v_lin: of inputs by their columns.
     """
 
     table: pd.DataFrame
@@ -87,6 +89,7 @@ class FigureData:
     options: FigureOptions = USUAL_FIGURES
     units: Mapping[str, ShownUnit] = field(default_factory=dict)
     words: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    v_lin: Callable[[Mapping[str, float | str]], float] | None = None
 
     def __post_init__(self) -> None:
         """Tables into the units in which they are shown, and the words for laws and methods."""
@@ -98,6 +101,7 @@ class FigureData:
     def of(cls, study: Study, table: pd.DataFrame, title: str = "", **more: Any) -> FigureData:
         """That of a table of a study, and of what else of its run is given."""
         told: dict[str, Any] = {"options": study.figures, "units": study.units, "words": study.in_words}
+        told["v_lin"] = None if study.links else partial(v_lin_of, study)
         return cls(table, title, **told | more)
 
     def shown(self, table: pd.DataFrame) -> pd.DataFrame:
@@ -128,7 +132,7 @@ class FigureData:
             return [*self.maps.over], self.columns[name]
         family = self.shares or self.family
         assert family is not None
-        shown = SHARES if self.shares else {}
+        shown = IN_SHARES if self.shares else {}
         return [family.abscissa], [shown.get(column, column) for column in self.columns[name]]
 
     def described(self, name: str) -> str:
@@ -150,6 +154,12 @@ class FigureData:
         finds = first and bool(self.title)
         told = printable(self.title) if finds else self.described(name)
         return Heading(told if self.options.title else "", self.options.width, finds)
+
+    @property
+    def error_seen(self) -> bool:
+        """Whether the error of the mean could be seen beside the mean."""
+        mean = self.table["mean_friction"]
+        return bool((self.table["error"] > LEAST_VISIBLE * (mean.max() - mean.min())).any())
 
     @property
     def reference(self) -> str | None:
@@ -240,14 +250,16 @@ def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
 
 def _of_table(data: FigureData, family: Family) -> dict[str, Drawer]:
     curves, maps = data.curves, data.maps
-    words = {column: word(shown, 28) for column, shown in SHARES.items()} if data.shares else {}
+    words = {column: word(shown, 28) for column, shown in IN_SHARES.items()} if data.shares else {}
     of_speed = data.onsets if family.along_speed else None
     one = CurveFigure(data.shares or family, (), of_speed, data.options, words)
     found: dict[str, Drawer] = {}
     for name, columns in data.columns.items():
         if maps is not None:
-            shown = [*columns, "error"] if name == "mean_friction" else columns
-            found[name] = replace(maps, columns=shown).draw
+            seen = name == "mean_friction" and data.error_seen
+            found[name] = replace(
+                maps, columns=[*columns, "error"] if seen else columns, v_lin=data.v_lin
+            ).draw
         else:
             found[name] = replace(one, columns=columns).draw
     if maps is None and "mean_friction" in found and (compared := _difference_figure(one, data.reference)):

@@ -20,6 +20,7 @@ from matplotlib.lines import Line2D
 
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import MOST_PICTURES, CurveData, CurveNumbers, Family, family_by
+from frictionlab.charts.jumps import with_jumps
 from frictionlab.charts.looks import Looks, curve_entries
 from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike, write_heading
 from frictionlab.charts.sweeps import SweptValue, headings, some_of, sweep_of
@@ -109,7 +110,7 @@ def orbit_figures(
     points = []
     for settings, rows in chosen:
         loops = {
-            (curve.law, curve.member): DrawnOrbit(curve, row, _closed(samples[row.name], row))
+            (curve.law, curve.member): DrawnOrbit(curve, row, with_jumps(_closed(samples[row.name], row)))
             for curve, row in reversed(rows)  # of several methods the first has the last word
             if row.name in samples
         }

@@ -1,13 +1,13 @@
 """Maps: a quantity over two swept numbers as shades with contours, in place of a line for each value.
 
-The mean, its error and whatever else a figure shows, where belt speed is not swept, or beside it a number of more
-values than lines can tell apart. Of two numbers beside belt speed the measures of the curves: how far friction falls,
-and the area that decides on their shape.
+The mean, its error where that can be seen beside it, and whatever else a figure shows, where belt speed is not swept,
+or beside it a number of more values than lines can tell apart. Of two numbers beside belt speed the measures of the
+curves: how far friction falls, and the area that decides on their shape.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -39,6 +39,7 @@ from frictionlab.columns import is_belt_speed, word
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
 MOST_SEPARATE = 12  # values of a number beside belt speed that are lines; more are a map
 LABEL_ROOM = 0.16, 0.09  # of a label of such a line, in shares of a picture
+LINE_PLACES = 400  # places along a line from a formula
 RASTERIZED = 100  # cells: more are pixels in a drawing
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
@@ -63,7 +64,7 @@ class MapValues(NamedTuple):
 class MapFigure:
     """Maps of some columns over the same two numbers, whose names in words may be longer than their own.
 
-    left_out: pictures that are not drawn.
+    left_out: pictures that are not drawn. v_lin: of inputs by their columns, None where they are not all there is.
     """
 
     over: tuple[str, str]
@@ -72,6 +73,7 @@ class MapFigure:
     table: pd.DataFrame
     columns: Sequence[str] = ()
     left_out: int = 0
+    v_lin: Callable[[Mapping[str, float | str]], float] | None = None
 
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """The figure, with matplotlib's settings as they are."""
@@ -87,12 +89,13 @@ class MapFigure:
     def _draw(self, figure: Figure, places: Sequence[Axes], column: str) -> None:
         """One column, in shades that mean the same in every picture."""
         grids = [self._grid(picture, column) for picture in self.pictures]
-        norm = _norm(np.concatenate([grid.known.ravel() for grid in grids]), column)
+        norm = _norm(np.concatenate([grid.known.ravel() for grid in grids]))
         for axes, picture, grid in zip(places, self.pictures, grids, strict=True):
             mesh = _draw_shades(axes, grid, norm)
-            _draw_contours(axes, grid, norm)
+            if column != "error":  # which jumps from point to point
+                _draw_contours(axes, grid, norm)
             if self._along_speed:
-                _draw_v_lin(axes, self._grid(picture, SPEED_RATIO))
+                self._draw_v_lin(axes, picture)
             self._mark_missing(axes, picture)
             axes.set(xlabel=self.words[0], ylabel=self.words[1])
             axes.spines[["top", "right"]].set_visible(True)
@@ -105,6 +108,20 @@ class MapFigure:
         x, y = (np.unique(picture.column(name)) for name in self.over)
         rows = picture.rows.sort_values([self.over[1], self.over[0]])
         return MapValues(x, y, rows[column].to_numpy(dtype=float).reshape(len(y), len(x)))
+
+    def _draw_v_lin(self, axes: Axes, picture: CurveData) -> None:
+        """The line on which the belt runs at V_lin: from its formula, else through that of every row."""
+        ratio = self._grid(picture, SPEED_RATIO)
+        y, edges = ratio.y, cell_edges(ratio.y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            x = np.nanmedian(np.abs(ratio.x / ratio.known), axis=1)
+        if self.v_lin is not None:
+            fine = (np.geomspace if is_logarithmic(y) else np.linspace)(edges[0], edges[-1], LINE_PLACES)
+            given = {name: value for name, value in picture.panel if value is not None}
+            found = np.array([self.v_lin(given | {self.over[1]: float(at)}) for at in fine])
+            x, y = (found, fine) if np.isfinite(found).any() else (x, y)
+        axes.autoscale(False)
+        axes.plot(x, y, color="white", linestyle="dashed", linewidth=1.1, path_effects=[DARK_EDGE])
 
     def _mark_missing(self, axes: Axes, picture: CurveData) -> None:
         look: Any = {"linestyle": "none", "color": "0.3", "markersize": 3}
@@ -175,10 +192,8 @@ def _figure(table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str]) -
     return MapFigure((x, y), words, drawn, table, left_out=len(pictures) - len(drawn))
 
 
-def _norm(values: CurveNumbers, column: str) -> Normalize:
+def _norm(values: CurveNumbers) -> Normalize:
     known = values[np.isfinite(values)]
-    if column == "error" and (known > 0.0).any():
-        return LogNorm(float(known[known > 0.0].min()), float(known.max()), clip=True)
     return Normalize(float(known.min()), float(known.max()))
 
 
@@ -193,10 +208,10 @@ def _draw_shades(axes: Axes, grid: MapValues, norm: Normalize) -> QuadMesh:
 
 
 def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize) -> None:
-    """Labelled lines of equal value, zero a broad one; none of an error, which jumps from point to point."""
+    """Labelled lines of equal value, zero a broad one."""
     low, high = float(norm.vmin or 0.0), float(norm.vmax or 0.0)
     few = min(grid.known.shape) < 2 or np.isfinite(grid.known).sum() < 4
-    if few or isinstance(norm, LogNorm) or not low < high:
+    if few or not low < high:
         return
     edge = LEVEL_EDGE * (high - low)  # a plateau at an end differs from it by rounding
     levels = [at for at in MaxNLocator(MOST_LEVELS).tick_values(low, high) if low + edge < at < high - edge]
@@ -214,16 +229,6 @@ def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize) -> None:
         else:
             kept.append(at)
             label.set(path_effects=[OUTLINE])
-
-
-def _draw_v_lin(axes: Axes, ratio: MapValues) -> None:
-    """The line on which the belt runs at V_lin, from the ratio of both speeds; none where no part of it is inside."""
-    known = np.abs(ratio.known[np.isfinite(ratio.known)])
-    if not known.size or not known.min() < 1.0 < known.max():
-        return
-    shares = np.ma.masked_invalid(np.abs(ratio.known))
-    line = axes.contour(ratio.x, ratio.y, shares, [1.0], colors="white", linestyles="dashed")
-    line.set(linewidth=1.1, path_effects=[DARK_EDGE])
 
 
 def cell_edges(values: CurveNumbers) -> CurveNumbers:

@@ -19,6 +19,8 @@ from frictionlab.charts.sweeps import plain
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
 LEGEND_FONT = 7  # [point]
 HANDLE = 3.5  # length of a sample of a line, long enough for its dashes [letter]
+TYPED = {"V_lin": r"$V_\mathrm{lin}$", "Omega": "Ω"}
+"""Symbols in titles, as studies type them."""
 PICTURE_SHARE = 0.8  # of the room of a picture, about, that is inside its axes
 
 
@@ -96,7 +98,10 @@ def write_title(figure: Figure, heading: Heading) -> int:
     lines = textwrap.wrap(plain(heading.title), round(figure.get_figwidth() * 13))
     if lines:
         weight = "bold" if heading.finds else "normal"
-        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight=weight)
+        words = "\n".join(lines)
+        for typed, symbol in TYPED.items():
+            words = words.replace(typed, symbol)
+        figure.suptitle(words, x=0.01, ha="left", fontsize=8, fontweight=weight)
     return len(lines)
 
 

@@ -13,6 +13,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 
+import frictionlab as fl
 from frictionlab.charts.figures import FigureData, figures_of
 from frictionlab.charts.maps import map_of
 
@@ -113,11 +114,32 @@ def test_more_curves_than_lines_can_tell_apart_are_a_map_with_v_lin_in_it() -> N
     mean = figure.axes[0]
     assert mean.get_xlabel() == "belt speed $v_b$"
     assert mean.get_ylabel() == r"drive frequency $\Omega$"
-    (line,) = [one for one in lines_in(mean) if list(one.levels) == [1.0]]
-    for speed, frequency in line.get_paths()[0].vertices:
-        assert speed == pytest.approx(2.0 * frequency)
+    (line,) = mean.lines
+    np.testing.assert_allclose(line.get_xdata(), 2.0 * np.asarray(line.get_ydata()))
     assert legend_of(figure) == [r"belt speed $V_\mathrm{lin}$"]
     assert len(drawn(along_speed(12)).axes[0].lines) == 12
+
+
+def test_v_lin_is_drawn_from_its_formula_between_the_points() -> None:
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    over = {
+        "scene.drive.frequency": np.linspace(0.5, 2.0, 16),
+        "scene.belt_speed": np.linspace(1.0, 60.0, 12),
+    }
+    found = fl.sweep(scene, fl.Coulomb(mu=0.4), over)
+
+    (line,) = found.plot().axes[0].lines
+
+    tip = int(np.argmax(line.get_xdata()))
+    assert line.get_xdata()[tip] == pytest.approx(51.03, abs=0.01)
+    assert line.get_ydata()[tip] == pytest.approx(1.02, abs=0.005)
+
+
+def test_an_error_that_cannot_be_seen_has_no_map() -> None:
+    shown = [[axes.get_ylabel() for axes in drawn(grid(error=error)).axes] for error in (1e-9, 0.01)]
+    assert ["error bound of the mean" in labels for labels in shown] == [False, True]
 
 
 def test_a_grid_with_holes_is_lines() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pandas as pd
@@ -11,6 +11,7 @@ from drawn_figures import NOTHING, drawn, legend_of, names_of, titles_of
 from matplotlib.figure import Figure
 
 from frictionlab.charts.figures import FigureData, Kept, figures_of
+from frictionlab.charts.jumps import with_jumps
 
 SPEEDS = np.arange(1.0, 13.0)
 OMEGA, SAMPLES = 2.0, 40
@@ -122,3 +123,42 @@ def test_of_many_harmonics_the_first_are_drawn_and_the_rest_are_told() -> None:
 
     assert len(figure.axes) == 12
     assert legend_of(figure)[-1] == "12 of 20 harmonics"
+
+
+def slides(friction_of: Callable[[np.ndarray], np.ndarray]) -> pd.DataFrame:
+    """A sine of slip whose friction follows from it."""
+    tau = np.linspace(0.0, 2.0 * np.pi, SAMPLES)
+    slip = np.sin(tau + 0.1)
+    return pd.DataFrame({"tau": tau, "x1": -np.cos(tau + 0.1), "slip": slip, "friction": friction_of(slip)})
+
+
+def test_friction_jumps_at_the_instant_at_which_slip_reverses() -> None:
+    found = with_jumps(slides(lambda slip: 0.4 * np.sign(slip)))
+
+    upright = np.flatnonzero(np.diff(found["tau"]) == 0.0)
+    np.testing.assert_allclose(found["tau"].iloc[upright], [np.pi - 0.1, 2.0 * np.pi - 0.1], atol=5e-3)
+    assert found["friction"].iloc[upright].tolist() == [0.4, -0.4]
+    assert found["friction"].iloc[upright + 1].tolist() == [-0.4, 0.4]
+    assert found["tau"].is_monotonic_increasing
+
+
+def test_friction_that_does_not_jump_stays_as_sampled() -> None:
+    smooth = slides(lambda slip: 0.4 * np.tanh(3.0 * slip))
+    bristle = slides(lambda slip: 0.4 * np.sign(slip)).assign(memory_0=0.1)
+
+    for samples in (smooth, bristle):
+        pd.testing.assert_frame_equal(with_jumps(samples), samples)
+
+
+def test_a_jump_into_stick_ends_where_the_friction_of_the_stick_begins() -> None:
+    samples = slides(lambda slip: 0.4 * np.sign(slip))
+    stuck = (samples["tau"] > np.pi - 0.1) & (samples["tau"] < np.pi + 0.7)
+    late = samples["tau"] > np.pi + 0.7
+    held = 0.1 - 0.5 * (samples["tau"] - np.pi + 0.1)
+    friction = samples["friction"].mask(stuck, held).mask(late, held.clip(lower=-0.4))
+
+    found = with_jumps(samples.assign(slip=samples["slip"].mask(stuck, 0.0), friction=friction))
+
+    (upright,) = np.flatnonzero(np.diff(found["tau"]) == 0.0)[:1]
+    assert found["friction"].iloc[upright] == 0.4
+    assert found["friction"].iloc[upright + 1] == pytest.approx(0.1, abs=2e-3)

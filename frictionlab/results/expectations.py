@@ -12,7 +12,7 @@ import pandas as pd
 from frictionlab.columns import BELT_SPEED, CURVE_MEASURES, INPUTS, belt_speed, given
 from frictionlab.printable import with_error
 from frictionlab.results.words import counted, in_words
-from frictionlab.study import Expectation, Wanted
+from frictionlab.study import Expectation, WhereValue
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.
 _SAME = 1e-9
@@ -52,7 +52,7 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
     return Verdict(found.passed, f"{_about(expectation)}: {found.sentence}")
 
 
-def _matching(where: dict[str, Wanted], table: pd.DataFrame) -> pd.DataFrame:
+def _matching(where: dict[str, WhereValue], table: pd.DataFrame) -> pd.DataFrame:
     if any(column not in table for column in where):
         return table.iloc[:0]
     chosen = np.ones(len(table), np.bool_)
@@ -61,7 +61,7 @@ def _matching(where: dict[str, Wanted], table: pd.DataFrame) -> pd.DataFrame:
     return table[chosen]
 
 
-def _is(wanted: Wanted, values: pd.Series) -> Any:
+def _is(wanted: WhereValue, values: pd.Series) -> Any:
     """Which values are as wanted."""
     if isinstance(wanted, list):
         return np.any([_is(one, values) for one in wanted], axis=0)
@@ -86,12 +86,12 @@ def _about(expectation: Expectation) -> str:
     )
 
 
-def _chosen(where: dict[str, Wanted]) -> str:
+def _chosen(where: dict[str, WhereValue]) -> str:
     """What selects rows, in words."""
     return ", ".join(f"{column} {_wanted(value)}" for column, value in where.items())
 
 
-def _wanted(value: Wanted) -> str:
+def _wanted(value: WhereValue) -> str:
     if isinstance(value, dict):
         return " ".join(f"{end} {in_words(number)}" for end, number in value.items())
     return " or ".join(map(in_words, value)) if isinstance(value, list) else in_words(value)

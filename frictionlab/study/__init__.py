@@ -7,7 +7,7 @@ from frictionlab.study.axes import GridValue
 from frictionlab.study.grid import StudyCase, StudyCurve
 from frictionlab.study.law_files import Plugins, laws_of_files
 from frictionlab.study.load import load_study, parse_study, read_back
-from frictionlab.study.parts import Expectation, LawChoice, MethodChoice, Wanted
+from frictionlab.study.parts import Expectation, LawChoice, MethodChoice, WhereValue
 from frictionlab.study.study import Study
 
 __all__ = [
@@ -21,7 +21,7 @@ __all__ = [
     "StudyCase",
     "StudyCurve",
     "StudyError",
-    "Wanted",
+    "WhereValue",
     "laws_of_files",
     "load_study",
     "parse_study",

@@ -11,7 +11,7 @@ from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
 from frictionlab.mistakes.validation import checked_value, placed, record_at
 from frictionlab.scene.as_written import in_si
 from frictionlab.scene.scene import Scene
-from frictionlab.study.parts import Expectation, Wanted
+from frictionlab.study.parts import Expectation, WhereValue
 from frictionlab.study.written import column_of
 from frictionlab.units.text import in_units
 
@@ -64,10 +64,10 @@ def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectat
 
 
 def _where(
-    given: Any, path: Path, table: Table, notes: Notes, read: Callable[..., Wanted | None]
-) -> dict[str, Wanted]:
+    given: Any, path: Path, table: Table, notes: Notes, read: Callable[..., WhereValue | None]
+) -> dict[str, WhereValue]:
     """The input columns and values that select rows; read: of one of them what it must be."""
-    where: dict[str, Wanted] = {}
+    where: dict[str, WhereValue] = {}
     for key, value in (notes.mapping(given, path) or {}).items():
         if key not in table.texts and key not in table.words and column_of(key) not in table.numbers:
             names = (*table.texts, *table.numbers, *table.words)
@@ -78,7 +78,7 @@ def _where(
     return where
 
 
-def _wanted(given: Any, path: Path, key: str, table: Table, notes: Notes) -> Wanted | None:
+def _wanted(given: Any, path: Path, key: str, table: Table, notes: Notes) -> WhereValue | None:
     """What an input of rows must be: one value, one of several, or a number within a range."""
     if isinstance(given, list):
         read = [_input(value, (*path, index), key, table, notes) for index, value in enumerate(given)]

@@ -109,7 +109,7 @@ class MethodChoice:
         return {"kind": self.name, **natural(self.parameters), **label}
 
 
-Wanted = str | float | list[str | float] | dict[str, float]
+WhereValue = str | float | list[str | float] | dict[str, float]
 """What an input must be: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
 
 
@@ -123,9 +123,9 @@ class Expectation:
     shape: of the curves those rows make, by ``measure``.
     """
 
-    where: dict[str, Wanted]
-    minus: dict[str, Wanted] | None = None
-    over: dict[str, Wanted] | None = None
+    where: dict[str, WhereValue]
+    minus: dict[str, WhereValue] | None = None
+    over: dict[str, WhereValue] | None = None
     column: str | None = None
     equals: float | None = None
     below: float | None = None

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from frictionlab.bench.account import add_to_account, entry_of, print_of
-from frictionlab.bench.report import cell_text, left_out, readable_rows
+from frictionlab.bench.report import TARGETS, cell_text, fastest, left_out, readable_rows
 from frictionlab.bench.sections import SectionResult
 from frictionlab.report.figures import address
 from frictionlab.report.page import rendered
@@ -18,8 +18,6 @@ from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import check_page, write_page
 
 PAGE_NAME = "index.html"
-MOST_ROWS_OPEN = 40
-"""Rows of a table that are shown unasked."""
 MOST_ROWS_ON_PAGE = 200
 ROWS_OF_MANY = 20
 """Shown of a table with more rows than a page holds."""
@@ -58,11 +56,12 @@ def bench_page(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> str:
         "bench.html",
         title=f"Bench results in {folder.absolute().name}",
         facts=[
-            f"{latest['processor']}, {counted(latest['cores'], 'core')}",
+            f"{counted(latest['cores'], 'core')} of {latest['processor']}",
             " … ".join(dict.fromkeys(f(str(entry["date"]) for entry in parts.values()) for f in (min, max))),
             *([counted(curves, "curve")] if curves else []),
             *([counted(len(shown) - curves, "section")] if len(shown) > curves else []),
         ],
+        overview=_overview(folder, [entry for entry in parts.values() if entry["kind"] == "curve"]),
         missing=left_out(missing) if missing else "",
         parts=shown,
         versions=_versions(latest),
@@ -86,6 +85,18 @@ def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+def _overview(folder: Path, curves: Sequence[Mapping[str, Any]]) -> Grid | None:
+    """What is fastest on each curve: of the methods to every error of interest, of other libraries to one."""
+    heads = ["curve", *(f"to {target:.0e}" for target in TARGETS), f"other libraries, to {TARGETS[1]:.0e}"]
+    rows = []
+    for entry in curves:
+        records = [record for name in entry["tables"] for record in _records(folder / name)]
+        told = [fastest(records, "method", target) for target in TARGETS]
+        rows.append([entry["name"], *told, fastest(records, "peer", TARGETS[1])])
+    caption = "The fastest to a largest error of the mean friction, in microseconds a point"
+    return Grid(caption, heads, rows) if rows else None
+
+
 def _versions(entry: Mapping[str, Any]) -> Grid:
     own = {name: entry[name] for name in ("frictionlab", "python", "platform", "processor")}
     rows = [[name, str(value)] for name, value in (own | entry["packages"]).items()]
@@ -93,20 +104,24 @@ def _versions(entry: Mapping[str, Any]) -> Grid:
 
 
 def _table(file: Path, made: Callable[[str, list[dict[str, str]]], Grid]) -> list[dict[str, Any]]:
-    """The table of a file, whether it is folded away, and the file with all of it."""
-    try:
-        with file.open(encoding="utf-8", newline="") as text:
-            records = list(csv.DictReader(text))
-    except OSError:
-        return []
+    """The table of a file, and the file with all of it."""
+    records = _records(file)
     if not records:
         return []
     few = records if len(records) <= MOST_ROWS_ON_PAGE else records[:ROWS_OF_MANY]
     grid = made(file.name, few)
     if len(few) < len(records):
         grid = grid._replace(caption=f"{file.name}: the first {len(few)} of {len(records):,} rows")
-    folded = len(few) > MOST_ROWS_OPEN or len(few) < len(records)
-    return [{"grid": grid, "folded": folded, "file": file.name}]
+    return [{"grid": grid, "file": file.name}]
+
+
+def _records(file: Path) -> list[dict[str, str]]:
+    """The rows of a file; none where it cannot be read."""
+    try:
+        with file.open(encoding="utf-8", newline="") as text:
+            return list(csv.DictReader(text))
+    except OSError:
+        return []
 
 
 def _any_table(name: str, records: list[dict[str, str]]) -> Grid:

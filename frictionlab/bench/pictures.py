@@ -51,7 +51,7 @@ def draw(result: SectionResult, folder: Path) -> list[BenchPicture]:
     with mpl.rc_context(look):
         if (figure := FIGURES_OF_SECTIONS[type(result)](result)) is None:
             return []
-        _print_below(figure, textwrap.fill(small_print(), 175))
+        _print_below(figure, textwrap.fill(small_print(), 110))
         drawn, _ = write_figure(figure, folder / f"{stem}.svg")
     drawn.write_text(_DIGITS.sub(r"\1", drawn.read_text(encoding="utf-8")), encoding="utf-8")
     return [BenchPicture(stem, result.caption)]
@@ -59,8 +59,8 @@ def draw(result: SectionResult, folder: Path) -> list[BenchPicture]:
 
 def _print_below(figure: Figure, text: str) -> None:
     """Small print at the lower right, in a strip that the layout leaves free."""
-    strip = 0.085 * (1 + text.count("\n")) / figure.get_figheight()
+    strip = 0.12 * (1 + text.count("\n")) / figure.get_figheight()
     engine = figure.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
         engine.set(rect=(0.0, strip, 1.0, 1.0 - strip))
-    figure.text(0.995, 0.1 * strip, text, ha="right", va="bottom", fontsize=4.5, color="0.45")
+    figure.text(0.995, 0.1 * strip, text, ha="right", va="bottom", fontsize=6.5, color="0.3")

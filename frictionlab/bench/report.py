@@ -78,6 +78,17 @@ def readable_rows(records: Sequence[Mapping[str, Any]]) -> tuple[list[str], list
     return [heads[place] for place in kept], [[row[place] for place in kept] for row in rows]
 
 
+def fastest(records: Sequence[Mapping[str, Any]], side: str, target: float) -> str:
+    """The least time per point [us] to this largest error, and whose it is; a dash where nothing comes so near."""
+    near = [
+        (float(row["mean_us"]), row["solver"])
+        for row in records
+        if row["side"] == side and row["largest_error"] and float(row["largest_error"]) <= target
+        if row["ok"] == row["points"] and row["mean_us"]
+    ]
+    return f"{_micro(min(near)[0])} by {min(near)[1]}" if near else "-"
+
+
 def markdown_lines(records: Sequence[Mapping[str, Any]]) -> list[str]:
     """The same as lines of Markdown."""
     heads, rows = readable_rows(records)

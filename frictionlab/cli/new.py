@@ -1,4 +1,4 @@
-"""``new``: a study or a law to begin from."""
+"""``new``: a study, a list of a bench or a law to begin from."""
 
 from __future__ import annotations
 
@@ -36,6 +36,17 @@ def study(path: Path, template: str | None) -> None:
             f"'frictionlab schema' prints the one for editors"
         )
     print_message(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
+
+
+@new_command.command("bench")
+@click.argument("path", type=options.PATH)
+def bench(path: Path) -> None:
+    """Write a commented list of what to measure to the file PATH, which ``bench`` takes. Never replaces a file."""
+    from frictionlab.scaffold.study import TEMPLATE, new_study
+
+    file = new_study(path, TEMPLATE.with_name("bench.yaml"))
+    print_result(str(file))
+    print_message(f"change what it says, then: frictionlab bench {shlex.quote(str(file))}")
 
 
 @new_command.command("law")

@@ -91,6 +91,21 @@ def test_the_page_is_sound_and_needs_nothing_else(page: Page) -> None:
     assert "at <resonance>" in "".join(heading.text for heading in page.all("h2"))
 
 
+def test_the_page_begins_with_what_is_fastest_and_folds_the_numbers(page: Page) -> None:
+    head, rows = table_of(page, "The fastest")
+    _, told = table_of(page, "W1_dry")
+    near = [row for row in told if float(row[3]) <= 1e-6]
+
+    assert page.all("table")[0].inside[0].text.startswith("The fastest")
+    assert head[:3] == ["curve", "to 1e-03", "to 1e-06"]
+    assert [row[0] for row in rows] == ["W1 dry", "W1 half dry"]
+    assert rows[0][2].endswith(f"by {near[0][0]}")
+    folded = [table for fold in page.all("details") for table in fold.inside]
+    assert len(page.all("table")) == 1 + len(
+        [each for each in folded if "scroll" in each.attributes.get("class", "")]
+    )
+
+
 PRICES = "model alone, μs", "its error alone, μs", "mean and error, μs"
 
 

@@ -21,6 +21,7 @@ from fake_methods import Fake, breaks_down
 
 import frictionlab as fl
 from frictionlab import cli, registry
+from frictionlab.bench import load_bench
 from frictionlab.charts import figures
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
@@ -261,6 +262,15 @@ def test_a_new_study_in_si_units_is_one(frictionlab: Any) -> None:
     assert scene.dimensional.belt_vibration == fl.DimensionalBeltVibration(
         displacement_amplitude="5 um", frequency="60 Hz"
     )
+
+
+def test_a_new_list_of_a_bench_can_be_measured_as_it_is(frictionlab: Any) -> None:
+    said = frictionlab("new", "bench", "mine")
+
+    assert (said.code, said.out) == (0, "mine.yaml\n")
+    assert said.err == "change what it says, then: frictionlab bench mine.yaml\n"
+    assert load_bench(Path("mine.yaml")).names == ["resonance"]
+    assert frictionlab("new", "bench", "mine").code == 2
 
 
 def test_a_new_study_names_its_schema_to_editors_who_find_it_beside_the_file(frictionlab: Any) -> None:

@@ -216,6 +216,24 @@ def test_at_rest_in_an_unstretched_spring_there_is_no_friction_under_any_law() -
     ages = RateAndState(mu=0.4, a=0.03, b=0.05, slip_length=0.01)
     for law in (FALLING, ages):
         answers = Shooting().solve([block(0.0)], law, 1e-8)
+        orbit = answers.orbit(0)
 
         assert answers.status == ["ok"]
         assert answers.mean[0] == 0.0
+        assert orbit is not None
+        assert orbit.stick.all()
+        assert not orbit.v.any()
+
+
+def test_bristles_on_a_belt_at_rest_do_not_creep_on_the_errors_of_steps() -> None:
+    law = fl.LuGre(
+        mu_kinetic=0.2556, mu_static=0.2996, stribeck_speed=0.0381, presliding_length=1.504e-4, damping=0.0301
+    )
+    start = {"x": -0.1588, "velocity": -0.2835}
+    scene = block(0.0, damping_ratio=0.0553, initial=start).model_copy(update={"normal_load": 1.3843})
+
+    states = [fl.steady_state(scene, law, tolerance=tolerance) for tolerance in (1e-6, 1e-8)]
+
+    assert [state.status for state in states] == ["ok", "ok"]
+    assert abs(states[0].mean_friction - states[1].mean_friction) <= states[0].error + states[1].error
+    assert (states[1].stick_fraction, states[1].reversals) == (1.0, 0.0)

@@ -205,5 +205,5 @@ def _example(run: Facts, row: pd.Series) -> Markup:
     if pd.isna(row["mean_low"]):
         return place
     low, high = number(row["mean_low"]), number(row["mean_high"])
-    window = "" if pd.isna(row["window"]) else f" over {row['window']:.6g} periods"
+    window = "" if pd.isna(row["window"]) else f" over {counted(round(row['window']), 'period')}"
     return Markup("{}: means from {} to {}{}").format(place, low, high, window)

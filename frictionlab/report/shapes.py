@@ -48,7 +48,7 @@ def shape_sentence(run: Facts) -> Markup:
     found, without = _verdicts(run, curves), int(curves["shape"].isna().sum())
     if not found:
         return Markup("No shape is read: {}.").format(_why_not(curves))
-    told = _one(run, found[0]) if len(found) == 1 else _several(found)
+    told = _one(run, found[0]) if len(found) == 1 else _several(found, every=not without)
     rest = f"; of {counted(without, 'curve')} none is read ({_why_not(curves)})" if without else ""
     return Markup("{}{}{}.").format(told, _otherwise(run, curves, found), rest)
 
@@ -107,12 +107,13 @@ def _one(run: Facts, curve: CurveRows) -> Markup:
     )
 
 
-def _several(found: Sequence[CurveRows]) -> Markup:
+def _several(found: Sequence[CurveRows], every: bool) -> Markup:
+    """every: whether these are all curves."""
     parts = {shape: [curve for curve in found if _shape(curve) == shape] for shape in MEANING}
     parts = {shape: own for shape, own in parts.items() if own}
     if len(parts) == 1:
-        every = "Both" if len(found) == 2 else f"All {len(found)}"
-        return Markup("{} curves are {}").format(every, _linked(next(iter(parts)), len(found)))
+        which = ("Both" if len(found) == 2 else f"All {len(found)}") if every else len(found)
+        return Markup("{} curves are {}").format(which, _linked(next(iter(parts)), len(found)))
     if len(found) <= MOST_CURVES_NAMED:
         named_ones = [_named(own, shape, found, not at) for at, (shape, own) in enumerate(parts.items())]
         return Markup("; ").join(named_ones)

@@ -205,6 +205,10 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
         [shape(law, "convex") for law in ("coulomb", "dahl", "lugre")],
         "All 3 curves are convex (below their chords).",
     ),
+    "curves that are not all are counted": (
+        [shape("coulomb", "concave"), shape("dahl", "concave"), shape("lugre", None, "no points")],
+        "2 curves are concave (above their chords); of 1 curve none is read (no points).",
+    ),
     "a few curves that differ are named": (
         [shape("coulomb", "concave"), shape("dahl", "convex"), shape("lugre", None, "no points")],
         "The curve of coulomb is concave (above its chord); that of dahl is convex (below its chord); "

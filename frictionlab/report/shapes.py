@@ -27,7 +27,7 @@ MEANING = {
 """Of each verdict what it says of one curve, and of several."""
 CONTRADICTORY = [{"concave", "convex"}, {"concave", "mixed"}, {"convex", "mixed"}]
 """Verdicts on the same curve that speak against each other."""
-MEASURES = {
+SHAPE_HEADS = {
     "shape": "shape",
     "shape_area": "area between curve and chord",
     "reversal_end": "end of reversal",
@@ -170,10 +170,10 @@ def _linked(shape: str, count: int) -> Markup:
 def shape_grid(run: Facts) -> Grid | None:
     """The measures of curves.csv, each with its error, the verdict first; None where there are none."""
     table = run.saved.curves
-    if table is None or not set(MEASURES) & set(table):
+    if table is None or not set(SHAPE_HEADS) & set(table):
         return None
     own, curves, unit = (
-        [name for name in MEASURES if name in table],
+        [name for name in SHAPE_HEADS if name in table],
         run.curves_of(table),
         unit_html(run.speed),
     )
@@ -181,7 +181,7 @@ def shape_grid(run: Facts) -> Grid | None:
         [*who, *(_measure(run, curve, name) for name in own)]
         for who, curve in zip(whose(curves), curves, strict=True)
     )
-    heads = [Markup("{}{}").format(MEASURES[name], unit if name == "reversal_end" else "") for name in own]
+    heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name == "reversal_end" else "") for name in own]
     caption = "Shape of each curve against its chord, the line from rest to the end of reversal"
     found = grid(caption, ["law", "method", "curve", *heads], rows, "curves", "curves.csv", len(table))
     return found._replace(below=" ".join(filter(None, [found.below, *_missing(table)])))

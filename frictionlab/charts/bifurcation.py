@@ -57,6 +57,8 @@ def bifurcation_figures(attractors: pd.DataFrame) -> dict[str, Callable[[Heading
 
 
 def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
+    if heading.into is not None:
+        raise ValueError("ax takes a figure of one picture, and this has 2; leave ax out")
     figure = blank_figure(PAGE, 4.6)
     write_title(figure, heading)
     above, below = figure.subplots(2, 1, sharex=True)

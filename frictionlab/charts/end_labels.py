@@ -12,7 +12,7 @@ from frictionlab.charts.curves import CurveNumbers
 from frictionlab.charts.sheet import LEGEND_FONT, text_width
 
 MOST_LABELS, APART = 7, 9.0  # at one picture; from one to the next [point]
-TOLD_APART, MOST_SHIFT = 1.5, 12.0  # between ends of curves, and from an end to its name [point]
+TOLD_APART, MOST_SHIFT = 3.0, 12.0  # between ends of curves, and from an end to its name [point]
 HEIGHT, GAP = 110.0, 9.0  # of the inside of a picture, about, and from an end to its name [point]
 WIDEST = 0.3  # of a picture
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictionlab.charts.bifurcation import bifurcation_figures
@@ -149,11 +150,11 @@ class FigureData:
         kind = name.lstrip("0123456789").lstrip("_")
         return kind != self.options.finding, FIGURE_NAMES.index(kind)
 
-    def heading(self, name: str, first: bool) -> Heading:
+    def heading(self, name: str, first: bool, into: Axes | None = None) -> Heading:
         """What stands above the pictures of a figure: the title where it is the first, else what it shows."""
         finds = first and bool(self.title)
         told = printable(self.title) if finds else self.described(name)
-        return Heading(told if self.options.title else "", self.options.width, finds)
+        return Heading(told if self.options.title else "", self.options.width, finds, into)
 
     @property
     def error_seen(self) -> bool:
@@ -211,7 +212,7 @@ def _remove_others(folder: Path, files: Sequence[Path]) -> None:
         file.unlink(missing_ok=True)
 
 
-def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
+def figures_of(data: FigureData, into: Axes | None = None) -> dict[str, Callable[[], Figure]]:
     """What draws each figure of a run, by its name, the most telling first."""
     found = {} if data.family is None else _of_table(data, data.family)
     if data.kept is not None and data.family is not None:
@@ -221,7 +222,7 @@ def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
     if data.attractors is not None:
         found |= bifurcation_figures(data.attractors)
     ranked = sorted(found, key=data.rank)
-    return {name: partial(found[name], data.heading(name, name == ranked[0])) for name in ranked}
+    return {name: partial(found[name], data.heading(name, name == ranked[0], into)) for name in ranked}
 
 
 def chosen_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
@@ -231,14 +232,15 @@ def chosen_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
     return {name: draw for name, draw in found.items() if data.options.all or name in {*first, "shape"}}
 
 
-def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
+def figure_of(data: FigureData, name: str = "mean_friction", into: Axes | None = None) -> Figure:
     """One figure of a run, as ``draw_figures`` would write it; nothing is written, and pyplot knows nothing of it.
 
-    Raises ValueError, with the names there are, where the run has no such figure.
+    into: axes to draw it into where it is one picture. Raises ValueError, with the names there are, where the run has
+    no such figure, and where it has several pictures and axes are given.
     """
     if name == "shape":
         data = replace(data, options=data.options.model_copy(update={"shape": True}))
-    found = figures_of(data)
+    found = figures_of(data, into)
     if name not in found:
         has = ", ".join(sorted(found)) if found else "none, for no number is swept"
         raise ValueError(f"no figure {name!r}; this table has: {has}")

@@ -33,7 +33,7 @@ ERROR = "#c2571a"
 LINE_OF_TOLERANCE: Any = {"color": "0.15", "linewidth": 1.0, "linestyle": (0, (4, 2))}
 
 
-def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
+def needs_figure(table: pd.DataFrame, title: str = "", into: Axes | None = None) -> Figure:
     """Bars of the largest change of the mean without each thing, and without all that the smallest model lacks."""
     curves = list(table.groupby("curve", sort=False))
     names = [name for name in dict.fromkeys(table["without"]) if PLUS not in name] + [SMALLEST]
@@ -43,7 +43,7 @@ def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
     entries.append(Line2D([], [], color=ERROR, marker="|", linewidth=1.6, label="error"))
     entries.append(Line2D([], [], label="tolerance", **LINE_OF_TOLERANCE))
     with mpl.rc_context(STYLE):
-        heading = Heading(title, "double")
+        heading = Heading(title, "double", into=into)
         sheet = Sheet.blank(len(curves), heading, entries, height=BAR * len(names) + AROUND)
         for place, (curve, rows) in enumerate(curves):
             axes = sheet.axes(place)
@@ -51,7 +51,7 @@ def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
             axes.set(xlabel="largest change of the mean friction coefficient")
             axes.set_title(plain(str(curve)), loc="left")
             axes.tick_params(labelleft=not place % sheet.wide, labelbottom=place + sheet.wide >= len(curves))
-        sheet.label_once(sheet.figure.axes)
+        sheet.label_once(sheet.figure.axes if into is None else [into])
     return sheet.figure
 
 

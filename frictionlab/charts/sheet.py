@@ -27,12 +27,14 @@ PICTURE_SHARE = 0.8  # of the room of a picture, about, that is inside its axes
 class Heading(NamedTuple):
     """What stands above the pictures of a figure, and the width that it is to have, as it needs where left out.
 
-    finds: whether it says what was found, rather than what is shown.
+    finds: whether it says what was found, rather than what is shown. into: axes of somebody's own figure, which then
+    keeps its size and has no title from here.
     """
 
     title: str = ""
     width: str | None = None
     finds: bool = False
+    into: Axes | None = None
 
 
 NO_HEADING = Heading()
@@ -44,6 +46,7 @@ class Sheet(NamedTuple):
     figure: Figure
     high: int
     wide: int
+    own: Axes | None = None
 
     @classmethod
     def blank(
@@ -54,7 +57,12 @@ class Sheet(NamedTuple):
         about: str | None = None,
         height: float = PANEL_HEIGHT,
     ) -> Sheet:
-        """With room for so many pictures of a height [inch]. entries: of the legend; about: its title."""
+        """With room for so many pictures of a height [inch]. entries: of the legend; about: its title.
+
+        Raises ValueError where more than one is to be drawn into given axes.
+        """
+        if heading.into is not None:
+            return cls._in(heading.into, pictures, entries, about)
         wide = abreast(pictures, heading)
         double = heading.width == "double" or (heading.width is None and wide == 2)
         high = -(-pictures // wide)
@@ -64,19 +72,34 @@ class Sheet(NamedTuple):
         sheet.add_legend(entries, about)
         return sheet
 
+    @classmethod
+    def _in(cls, axes: Axes, pictures: int, entries: Sequence[Any], about: str | None) -> Sheet:
+        if pictures > 1:
+            raise ValueError(f"ax takes a figure of one picture, and this has {pictures}; leave ax out")
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        sheet = cls(figure, 1, 1, axes)
+        sheet.add_legend(entries, about)
+        return sheet
+
     def add_legend(self, entries: Sequence[Any], about: str | None = None) -> None:
-        """Below the pictures, with room of its own."""
+        """Below the pictures, with room of its own; inside axes that were given."""
+        if self.own is not None:
+            if entries:
+                self.own.legend(handles=entries, title=about, handlelength=HANDLE)
+            return
         lines = _add_legend(self.figure, entries, about)
         self.figure.set_figheight(self.figure.get_figheight() + LINE * lines)
 
     def axes(self, place: int) -> Axes:
         """Those of the picture at this place, from 0, row by row."""
-        return self.figure.add_subplot(self.high, self.wide, place + 1)
+        return self.own or self.figure.add_subplot(self.high, self.wide, place + 1)
 
     @property
     def picture_width(self) -> float:
         """Of the inside of a picture, about [point]."""
-        return PICTURE_SHARE * 72 * self.figure.get_figwidth() / self.wide
+        share = PICTURE_SHARE / self.wide if self.own is None else float(self.own.get_position().width)
+        return share * 72 * self.figure.get_figwidth()
 
     def label_once(self, pictures: Sequence[Axes]) -> None:
         """Of equal labels under each other, and side by side, only the lowest and the first are left."""

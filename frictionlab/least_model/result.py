@@ -62,8 +62,8 @@ class Needs:
         """Its sentences, a line each."""
         return "\n".join(self.sentences)
 
-    def plot(self) -> Any:
-        """A matplotlib figure: bars of the change without each thing, against the tolerance.
+    def plot(self, ax: Any = None) -> Any:
+        """A matplotlib figure: bars of the change without each thing, against the tolerance. ax: axes to draw into.
 
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
@@ -73,7 +73,7 @@ class Needs:
         """
         from frictionlab.charts.needs import needs_figure  # with matplotlib, which takes a second
 
-        return needs_figure(self.table)
+        return needs_figure(self.table, into=ax)
 
 
 def needs_from(

@@ -36,6 +36,7 @@ from frictionlab.units.shown import in_shown_units
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -140,12 +141,14 @@ class Comparison:
         rest = [name for name in table.columns if name not in dimensions]
         return table.set_index(dimensions)[rest].to_xarray()
 
-    def plot(self, figure: str = "mean_friction", onsets: bool = False, **options: Any) -> Figure:
+    def plot(
+        self, figure: str = "mean_friction", onsets: bool = False, ax: Axes | None = None, **options: Any
+    ) -> Figure:
         """One of its figures as matplotlib has it, to show, change and save; nothing is written.
 
         figure: mean_friction, velocity, energies, differences, shape or map, where there is one. onsets: mark them,
-        which takes a while to find. options: the keys of ``figures`` of a study, such as ``normalized=True``,
-        ``width="single"``, ``against="coulomb"``.
+        which takes a while to find. ax: axes of your own to draw it into, where it is one picture. options: the keys
+        of ``figures`` of a study, such as ``normalized=True``, ``width="single"``, ``against="coulomb"``.
 
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
@@ -154,7 +157,8 @@ class Comparison:
         >>> round(25.4 * figure.get_figwidth())
         85
 
-        Raises ValueError for a figure that there is none of, and for options that mean nothing.
+        Raises ValueError for a figure that there is none of, for one of several pictures where ``ax`` is given, and
+        for options that mean nothing.
         """
         from frictionlab.charts.figures import FigureData, figure_of  # with matplotlib, which takes a second
 
@@ -162,7 +166,7 @@ class Comparison:
         asked = figure_options(study.figures.resolved() | options, tuple(law.label for law in study.laws))
         marked = self.onsets if onsets else None
         told = {"onsets": marked, "curves": self.curves, "options": asked}
-        return figure_of(FigureData.of(study, whole(self.table), study.title, **told), figure)
+        return figure_of(FigureData.of(study, whole(self.table), study.title, **told), figure, ax)
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.

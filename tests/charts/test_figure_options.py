@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -252,3 +253,17 @@ def test_three_figures_are_drawn_and_all_where_asked_for(laws: pd.DataFrame, tmp
         "velocity",
         "energies",
     }
+
+
+def test_a_figure_of_one_picture_is_drawn_into_axes_of_ones_own(laws: pd.DataFrame) -> None:
+    _, (first, second) = plt.subplots(1, 2)
+    one = laws[laws["scene.drive.frequency"] == 1.0]
+
+    figure = figure_of(FigureData(one, "A title"), into=second)
+
+    assert figure.axes == [first, second]
+    assert (len(first.lines), len(curves_of(second))) == (0, 2)
+    assert [text.get_text() for text in second.get_legend().get_texts()] == ["other", "coulomb"]
+    with pytest.raises(ValueError, match="ax takes a figure of one picture, and this has 2"):
+        figure_of(FigureData(laws), into=first)
+    plt.close(figure)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import matplotlib.pyplot as plt
 import pandas as pd
 
 from frictionlab.charts.needs import needs_figure
@@ -31,3 +32,13 @@ def test_verdicts_differ_by_more_than_colour_and_every_curve_has_a_panel() -> No
     assert [text.get_text() for text in quick.texts] == ["no such part", "no such part", "the full one"]
     assert slow.get_xlim() == quick.get_xlim()
     assert slow.get_xlim()[1] > 0.1
+
+
+def test_one_curve_is_drawn_into_axes_of_ones_own() -> None:
+    figure, axes = plt.subplots()
+
+    assert needs_figure(pd.DataFrame([row("slow", "viscosity", "needed", -0.1)]), into=axes) is figure
+
+    assert axes.get_title(loc="left") == "slow"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["needed", "error", "tolerance"]
+    plt.close(figure)

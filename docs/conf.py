@@ -13,8 +13,9 @@ project = "frictionlab"
 author = project_copyright = "The frictionlab authors"
 version = release = version_of("frictionlab")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "docstrings", "outside_pages"]
-extensions += ["finished_pages"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "docstrings", "finished_pages"]
+# for developers, read in the repository
+exclude_patterns = ["architecture.md", "tests.md"]
 
 myst_enable_extensions = ["dollarmath", "deflist", "attrs_block"]
 myst_heading_anchors = 4
@@ -30,6 +31,7 @@ html_static_path = ["_static", f"{MATHJAX}/tex-svg-full.js"]
 mathjax_path = "tex-svg-full.js"
 html_favicon = "_static/favicon.svg"
 html_css_files = ["site.css"]
+html_use_index = False
 html_show_sphinx = False
 html_copy_source = False
 html_theme_options = {"footer_icons": []}

@@ -1,6 +1,6 @@
 """Which method takes which scene with which law, asked of the methods themselves: python tests/scene_table.py.
 
-Writes the tables of docs/scenes.md between their marks.
+Writes the tables of docs/which.md between their marks.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 
 PROJECT = Path(__file__).parents[1]
-PAGE = PROJECT / "docs" / "scenes.md"
+PAGE = PROJECT / "docs" / "which.md"
 BEGIN, END = "<!-- made by tests/scene_table.py -->\n", "<!-- end -->\n"
 METHODS = ("auto", "exact", "shooting", "march", "mdsm", "harmonic_balance")
 

@@ -170,7 +170,7 @@ for task in tasks:
 
 
 def test_the_job_array_of_the_docs_solves_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = (DOCS / "scale.md").read_text()
+    text = (DOCS / "cost.md").read_text()
     (script,) = re.findall(r"<!-- slurm -->\n```sh\n(.*?)```", text, re.DOTALL)
     commands = {
         "sbatch": SBATCH.format(python=sys.executable),

@@ -125,7 +125,7 @@ def test_mistakes_are_told(parameters: object, error: type[Exception], told: str
 
 
 def test_the_page_shows_what_happens() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "sensitivities.md").read_text()
+    page = (Path(__file__).parents[2] / "docs" / "needs.md").read_text()
     code, shown = re.findall(r"```(?:python|text)\n(.*?)```", page, re.DOTALL)[:2]
     printed = io.StringIO()
     with redirect_stdout(printed):

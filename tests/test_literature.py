@@ -31,6 +31,10 @@ from frictionlab.study import StudyError, parse_study
         (fl.Dimensional, "m", "mass"),
         (fl.Dimensional, "zeta", "damping_ratio"),
         (fl.Dimensional, "f_n", "natural_frequency"),
+        (fl.Dimensional, "belt_velocity", "belt_speed"),
+        (fl.Dimensional, "normal_force", "normal_load"),
+        (fl.DimensionalBeltVibration, "amplitude", "displacement_amplitude"),
+        (fl.Scene, "si", "dimensional"),
         (fl.Scene, "zeta", "damping_ratio"),
         (fl.Scene, "v_b", "belt_speed"),
     ],
@@ -42,8 +46,11 @@ def test_a_name_of_a_paper_leads_to_ours(record: Any, given: str, meant: str) ->
     assert not any(f": {meant}: required" in str(each) for each in caught.value.mistakes)
 
 
-def test_a_range_in_steps_is_asked_for_its_number_of_values() -> None:
+@pytest.mark.parametrize(("given", "meant"), [("step", "num"), ("from", "start"), ("to", "stop")])
+def test_other_names_for_the_ends_of_a_range_and_its_steps_lead_to_ours(given: str, meant: str) -> None:
     scene = {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1}
     tree = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.3}]}
-    with pytest.raises(StudyError, match="did you mean 'num'"):
-        parse_study(tree | {"sweep": {"scene.belt_speed": {"start": 1, "stop": 2, "step": 0.1}}})
+    whole = {"start": 1.0, "stop": 2.0, "num": 5} | {given: 0.5}
+    del whole[meant]
+    with pytest.raises(StudyError, match=f"did you mean '{meant}'"):
+        parse_study(tree | {"sweep": {"scene.belt_speed": whole}})

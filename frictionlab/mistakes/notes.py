@@ -160,7 +160,11 @@ LITERATURE = (
     ("n fn load weight preload normalforce", "normal_load"),
     ("v vb v0 velocity speed beltvelocity", "belt_speed"),
     ("g", "gravity"),
+    ("amplitude x", "displacement_amplitude"),
     ("step points n count steps", "num"),
+    ("from first begin", "start"),
+    ("to last end until", "stop"),
+    ("si units", "dimensional"),
 )
 """Names of papers without underscores, and what they are here; the first that a record has is meant."""
 

@@ -33,7 +33,15 @@ from frictionlab.charts.curves import (
 )
 from frictionlab.charts.looks import LEGEND_MARKS, joined_methods, status_entries
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, abreast, part_told
-from frictionlab.charts.sweeps import BESIDE, is_logarithmic, linked_words, shortened, some_of, sweep_of
+from frictionlab.charts.sweeps import (
+    BESIDE,
+    headings,
+    is_logarithmic,
+    linked_words,
+    shortened,
+    some_of,
+    sweep_of,
+)
 from frictionlab.columns import is_belt_speed, word
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
@@ -90,7 +98,8 @@ class MapFigure:
         """One column, in shades that mean the same in every picture."""
         grids = [self._grid(picture, column) for picture in self.pictures]
         norm = _norm(np.concatenate([grid.known.ravel() for grid in grids]))
-        for axes, picture, grid in zip(places, self.pictures, grids, strict=True):
+        titles = headings([picture.panel for picture in self.pictures])
+        for axes, picture, grid, told in zip(places, self.pictures, grids, titles, strict=True):
             mesh = _draw_shades(axes, grid, norm)
             if column != "error":  # which jumps from point to point
                 _draw_contours(axes, grid, norm)
@@ -99,7 +108,7 @@ class MapFigure:
             self._mark_missing(axes, picture)
             axes.set(xlabel=self.words[0], ylabel=self.words[1])
             axes.spines[["top", "right"]].set_visible(True)
-            axes.set_title(self._name(picture), loc="left")
+            axes.set_title(", ".join([*self._names(picture), *([told] if told else [])]), loc="left")
         bar = figure.colorbar(mesh, ax=list(places), pad=0.02, fraction=0.06)
         bar.set_label(MEASURE_NAMES.get(column) or word(column, 28))
         bar.outline.set_linewidth(0.5)
@@ -133,12 +142,12 @@ class MapFigure:
     def _along_speed(self) -> bool:
         return is_belt_speed(self.over[0]) and SPEED_RATIO in self.table
 
-    def _name(self, picture: CurveData) -> str:
+    def _names(self, picture: CurveData) -> list[str]:
         methods = [(each.method, *each.same) for each in self.pictures]
         named = [shortened(picture.law, BESIDE)] if len({each.law for each in self.pictures}) > 1 else []
         if len(set(methods)) > 1 or len(methods[0]) > 1:
             named.append(joined_methods((picture.method, *picture.same)))
-        return ", ".join(named + [setting.sentence for setting in picture.panel])
+        return named
 
     def _entries(self) -> list[Artist]:
         entries: list[Artist] = [*status_entries(self.table)] if "status" in self.table else []

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from frictionlab.charts.curves import CurveData, Family, drawn_once
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, part_told
-from frictionlab.charts.sweeps import BESIDE, shortened, some_of
+from frictionlab.charts.sweeps import BESIDE, headings, shortened, some_of
 from frictionlab.columns import CURVES, is_belt_speed, word
 from frictionlab.printable import with_error
 
@@ -56,8 +56,12 @@ class ShapeFigure:
         """The figure, with matplotlib's settings as they are."""
         told = part_told(len(self.chosen), len(self.chosen) + self.left_out, "curves")
         sheet = Sheet.blank(len(self.chosen), heading, told)
-        for place, (curve, chord) in enumerate(self.chosen):
-            self._draw(sheet.axes(place), curve, chord)
+        settings = [(*curve.panel, *([curve.member] if curve.member else [])) for curve, _ in self.chosen]
+        for place, ((curve, chord), told) in enumerate(zip(self.chosen, headings(settings), strict=True)):
+            axes = sheet.axes(place)
+            self._draw(axes, curve, chord)
+            name = ", ".join([*self._names(curve), *([told] if told else [])])
+            axes.set_title(f"{name}\n{chord.sentence}", loc="left")
         sheet.label_once(sheet.figure.axes)
         return sheet.figure
 
@@ -74,15 +78,11 @@ class ShapeFigure:
         axes.set(xlabel=self.family.word(self.family.abscissa), ylabel=word("mean_friction", 16))
         axes.margins(x=0.02)
         axes.set_ylim(min(0.0, axes.get_ylim()[0]), None)
-        axes.set_title(f"{self._name(curve)}\n{chord.sentence}", loc="left")
 
-    def _name(self, curve: CurveData) -> str:
+    def _names(self, curve: CurveData) -> list[str]:
         several = len({each.method for each in self.looks.curves}) > 1
         names = [curve.law] * (("law", curve.law) not in curve.panel) + [curve.method] * several
-        settings = [*curve.panel, *([curve.member] if curve.member else [])]
-        return ", ".join(
-            [*(shortened(name, BESIDE) for name in names), *(each.sentence for each in settings)]
-        )
+        return [shortened(name, BESIDE) for name in names]
 
 
 def chord_of(curve: CurveData, curves: pd.DataFrame, speed: str) -> Chord | None:

@@ -57,10 +57,10 @@ class ShapeFigure:
         told = part_told(len(self.chosen), len(self.chosen) + self.left_out, "curves")
         sheet = Sheet.blank(len(self.chosen), heading, told)
         settings = [(*curve.panel, *([curve.member] if curve.member else [])) for curve, _ in self.chosen]
-        for place, ((curve, chord), told) in enumerate(zip(self.chosen, headings(settings), strict=True)):
+        for place, ((curve, chord), same) in enumerate(zip(self.chosen, headings(settings), strict=True)):
             axes = sheet.axes(place)
             self._draw(axes, curve, chord)
-            name = ", ".join([*self._names(curve), *([told] if told else [])])
+            name = ", ".join([*self._names(curve), *([same] if same else [])])
             axes.set_title(f"{name}\n{chord.sentence}", loc="left")
         sheet.label_once(sheet.figure.axes)
         return sheet.figure

@@ -16,8 +16,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.sheet import Heading, write_title
-from frictionlab.charts.style import PAGE, blank_figure
+from frictionlab.charts.sheet import Heading, Sheet, write_title
+from frictionlab.charts.style import COLUMN, PAGE, blank_figure
 from frictionlab.columns import (
     BELT_SPEEDS,
     INPUTS,
@@ -59,7 +59,7 @@ def bifurcation_figures(attractors: pd.DataFrame) -> dict[str, Callable[[Heading
 def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     if heading.into is not None:
         raise ValueError("ax takes a figure of one picture, and this has 2; leave ax out")
-    figure = blank_figure(PAGE, 4.6)
+    figure = blank_figure(COLUMN if heading.width == "single" else PAGE, 4.6)
     write_title(figure, heading)
     above, below = figure.subplots(2, 1, sharex=True)
     speed, place = (shown_column(rows, name) for name in ("belt_speed", "x"))
@@ -77,7 +77,7 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     axis = BELT_SPEEDS[0] if speed == "belt_speed" else f"{BELT_SPEEDS[1]}{SHOWN_IN}{unit_shown(speed)}"
     at = f"start of a drive period [{unit_shown(place)}]" if unit_shown(place) else "start of a drive period"
     below.set(xlabel=word(axis), ylabel=f"position $x_1$ at the\n{at}")
-    figure.legend(handles=list(_legend(states)), loc="outside lower center", ncols=7, handlelength=1.0)
+    Sheet(figure, 2, 1).add_legend(list(_legend(states)))
     return figure
 
 

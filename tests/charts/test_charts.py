@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 
 from frictionlab.charts import figures
+from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.end_labels import moved_apart
@@ -466,3 +467,15 @@ def test_the_legend_tells_laws_and_values_apart_where_that_is_shorter(resonance:
     assert {line.get_marker() for line in lines} == {line.get_marker() for line in values}
     dashes = {str(line._unscaled_dash_pattern) for line in laws}
     assert dashes == {str(line._unscaled_dash_pattern) for line in lines}
+
+
+def test_a_figure_of_every_state_takes_the_width_asked_for() -> None:
+    rows = {"point": [1, 1], "period": [1, 0], "belt_speed": [1.0, 2.0], "mean_friction": 0.1, "x": 0.0}
+    states = pd.DataFrame({"law": "coulomb", **rows, "mean_low": 0.0, "mean_high": 0.2})
+
+    widths = []
+    for width in ("single", "double"):
+        with mpl.rc_context(STYLE):
+            figure = bifurcation_figures(states)["bifurcation"](Heading("A title", width))
+        widths.append(round(25.4 * figure.get_figwidth()))
+    assert widths == [85, 175]

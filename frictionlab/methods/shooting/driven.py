@@ -132,12 +132,24 @@ class SteadyStates:
         self.solved_by = [problem] * n
 
     def close_all(self, where: list[int]) -> None:
-        """Close the orbits of the scenes at these places: near rest by implicit steps, or where others fail."""
+        """Close the orbits of the scenes at these places: near rest by implicit steps, or where others fail.
+
+        Where all do, from the end of a motion that is followed until it repeats, as all do that one orbit attracts.
+        """
         held = self._held(where)
         self.close(sorted(held), by=self.near_rest)
         self.close([i for i in where if i not in held or self.status[i] == "failed"])
         failed = [i for i in where if i not in held and self.status[i] == "failed"]
         self.close(failed if self.near_rest else [], by=self.near_rest)
+        for i in where if self.problem.goal.contracts else ():
+            if self.status[i] == "failed":
+                self._close_where_it_ends(i)
+
+    def _close_where_it_ends(self, i: int) -> None:
+        speed = float(self.belt_speeds[i])
+        way = self.problem.carried(speed, self.problem.state_at(speed, None), MOST)
+        self.seconds[i] += way.seconds
+        self.close([i], way.state)
 
     def close(self, where: list[int], state: Floats | None = None, by: PeriodicProblem | None = None) -> None:
         """Close the orbits of the scenes at these places, from a known state at the first where there is one."""

@@ -172,3 +172,19 @@ def test_an_orbit_that_slips_once_a_period_is_that_of_steps_from_release_to_capt
     assert state.error < 2e-10
     assert after == pytest.approx([x1, x2], rel=1e-8)
     assert max(abs(mean - known), abs(state.mean_friction - known)) <= state.error + 1e-13
+
+
+def test_an_orbit_under_a_square_load_is_closed_where_a_motion_ends():
+    """The search from the friction-free orbit does not close it; marching finds the same mean."""
+    load = fl.Load(amplitude=0.1414, phase=316.3, waveform="square")
+    drive = fl.Drive(amplitude=0.0143, frequency=0.4054, phase=316.3, waveform="square")
+    across = fl.Transverse(natural_frequency=1.2286, damping_ratio=0.2409, load=load)
+    scene = fl.Scene(
+        damping_ratio=0.1909, normal_load=1.6656, belt_speed=-0.0033, drive=drive, transverse=across
+    )
+    law = fl.Coulomb(mu=0.1568)
+    state, marched = answered(scene, law), fl.steady_state(scene, law, method="march", tolerance=1e-5)
+
+    assert (state.status, state.unique) == ("ok", "proved")
+    assert state.error <= 1e-8
+    assert abs(state.mean_friction - marched.mean_friction) <= state.error + marched.error

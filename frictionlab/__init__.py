@@ -1,4 +1,4 @@
-"""Average-friction curves of vibrated sliding bodies, every point with an error bound."""
+"""Mean friction of a vibrated body on a moving belt, and how far each number may be off."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import re
 from itertools import pairwise
 from typing import Any
 
-from said_of_parameters import COMMON, TYPES
+from said_of_parameters import COMMON, SHORT, TYPES
 from sphinx.application import Sphinx
 
 SETTING = {
@@ -86,12 +86,13 @@ def _without_entries(text: str, names: list[str]) -> tuple[str, dict[str, tuple[
 
 
 def _without_raised(text: str) -> tuple[str, list[str]]:
-    """The text, sources in a paragraph of their own; what is raised, linked to the reasons."""
+    """The text without its sources; what is raised, linked to the reasons."""
     told = re.sub(r"(?:^|\n|(?<=\. ))(?=Sources?: |Raises [A-Z])", "\n\n", text)
     paragraphs = re.split(r"\n\n+", told)
     raised = [each.removeprefix("Raises ") for each in paragraphs if each.startswith("Raises ")]
     linked = [RAISED.sub(r":ref:`\1 <what-is-raised>`", each) for each in raised]
-    kept = "\n\n".join(each for each in paragraphs if not each.startswith("Raises "))
+    left_out = ("Raises ", "Source: ", "Sources: ")  # sources are with the formulas, in theory
+    kept = "\n\n".join(each for each in paragraphs if not each.startswith(left_out))
     return kept, [line for each in linked for line in [f"**Raises** {each}", ""]]
 
 
@@ -127,7 +128,8 @@ def _table(parameters: dict[str, inspect.Parameter], entries: dict[str, tuple[st
         if name in together:
             continue
         told, limits, meaning = entries.get(name, (name, "", ""))
-        meaning = re.sub(r"; or instead$", ", or instead the next", meaning) or COMMON.get(name, "")
+        meaning = re.sub(r"; or instead$", ", or instead the next", meaning)
+        meaning = SHORT.get(name) or meaning or COMMON.get(name, "")
         names = ", ".join(f"``{one}{_default(parameters[one])}``" for one in told.split(", "))
         limits = "none" if limits == "-" else re.sub(r"^-, ", "", limits)
         rows.append([names, _type(each), _plain(limits), _plain(" ".join(meaning.split()))])

@@ -40,6 +40,12 @@ COMMON = {
 }
 """Of parameters that many have, where a docstring does not say more."""
 
+SHORT = {
+    "progress": "tells on stderr how far it is; None: in a terminal or notebook",
+    "waveform": "sine where left out, square, triangle, sawtooth or {harmonics: [...]}",
+}
+"""In place of what docstrings say again and again."""
+
 TYPES = {
     r"\bArrayLike\b": "number | list | array",
     r"\bLawsGiven\b": "law | list | dict",

@@ -144,7 +144,7 @@ def _command(name: str) -> click.Command:
 @click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="frictionlab", message="%(prog)s %(version)s")
 def cli() -> None:
-    """Average-friction curves of vibrated sliding bodies, every point with an error bound.
+    """Mean friction of a vibrated body on a moving belt, and how far each number may be off.
 
     Exit codes: 0 ok; 1 a bug of frictionlab; 2 wrong command or study; 3 some points failed or were killed,
     an expectation failed, or the results could not be written; 4 a plugin is broken; 130 interrupted, the

@@ -48,6 +48,7 @@ def test_a_study_has_a_short_name_its_claim_in_the_title_its_source_and_why_it_e
         plan = load_study(study)
         assert re.fullmatch(r"[a-z][a-z0-9_]{1,39}", study.stem)
         assert " " in plan.title
+        assert len(plan.title) <= 76, f"{study}: its title takes more than one line of a figure 175 mm wide"
         assert plan.source, study
         assert all(expectation.because for expectation in plan.expect), study
 

@@ -37,7 +37,10 @@ FIGURES = {
     "energies": ["energy_input", "energy_viscous", "energy_friction", "energy_contact"],
 }
 OTHER_FIGURES = {
-    "differences": ("Mean friction less that of {reference}", ", with the sum of both errors as a band"),
+    "differences": (
+        "Mean friction less that of {reference}{shares} over {abscissa}",
+        ", with the sum of both errors as a band",
+    ),
     "map": ("Measures of the curves over what else is swept", ": shades with lines of equal value"),
     "shape": (
         "Curves of mean friction with their chords from rest to the end of reversal",
@@ -143,7 +146,10 @@ class FigureData:
             told = f"{', '.join(shown)} over {' and '.join(over)}"
             return f"{told[:1].upper()}{told[1:]}"
         told, _ = OTHER_FIGURES.get(name, (BIFURCATION, ""))
-        return told.format(reference=self.reference)
+        family = self.shares or self.family
+        shares = ", in shares of steady sliding friction," if self.shares else ""
+        abscissa = plain_word(family.abscissa) if family else ""
+        return told.format(reference=self.reference, shares=shares, abscissa=abscissa)
 
     def rank(self, name: str) -> tuple[bool, int]:
         """The place of a figure among others: first the one that shows what the title says, then the most telling."""

@@ -50,10 +50,11 @@ def pictures(run: Facts) -> list[Picture]:
     drawn = {file.stem for file in (run.saved.folder / "figures").glob("*")}
     expected = sorted(data.columns, key=data.rank)[:1]
     names = sorted({*expected, *(drawn & {*data.columns, *OTHER_FIGURES, *several})}, key=data.rank)
-    lines_in = next((at for at, name in enumerate(names, 1) if name in data.columns), 0)
+    of_curves = {*data.columns, "differences"}
+    lines_in = next((at for at, name in enumerate(names, 1) if name in of_curves), 0)
 
     def told(at: int, name: str) -> Picture:
-        if name in data.columns:
+        if name in of_curves:
             return _of_table(run, name, lines_in if at != lines_in else 0)
         return _of_bifurcation(run, name, several[name]) if name in several else _of_kept(run, name)
 
@@ -77,10 +78,14 @@ def address(path: Path) -> str:
 
 
 def _of_kept(run: Facts, name: str) -> Picture:
-    _, more = OTHER_FIGURES[name]
     family = run.figures.family
     narrow = family is None or len(family.panels) == 1
-    return _picture(run, name, escape(f"{run.figures.described(name)}{more}."), narrow=narrow)
+    return _picture(run, name, _described(run, name) + ".", narrow=narrow)
+
+
+def _described(run: Facts, name: str) -> Markup:
+    _, more = OTHER_FIGURES[name]
+    return escape(f"{run.figures.described(name)}{more}")
 
 
 def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
@@ -100,12 +105,12 @@ def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
     """One of the table; lines_in: the number of the figure whose caption says what lines mean, 0 for its own."""
     family, maps = run.figures.family, run.figures.maps
     assert family is not None
-    axes, columns = run.figures.axes_of(name)
+    axes, columns = run.figures.axes_of(name) if name in run.figures.columns else ([], [])
     over = Markup(" and ").join(map(word_html, axes))
     shown = Markup(", ").join(map(word_html, columns))
     shown = Markup(shown[:1].upper() + shown[1:])
     if maps is None:
-        told = [Markup("{} against {}").format(shown, over)]
+        told = [Markup("{} against {}").format(shown, over) if columns else _described(run, name)]
         lines = list(_lines(family))
     else:
         told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
@@ -120,7 +125,7 @@ def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
         f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
         for column, found in known.items()
     )
-    alone = maps is None and len(family.panels) * len(columns) == 1
+    alone = maps is None and len(family.panels) * max(1, len(columns)) == 1
     return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", alone)
 
 

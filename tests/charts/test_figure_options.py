@@ -231,7 +231,7 @@ def test_only_the_figure_that_shows_a_finding_bears_the_title(laws: pd.DataFrame
 
     assert titles() == {
         "mean_friction": "A finding",
-        "differences": "Mean friction less that of coulomb",
+        "differences": "Mean friction less that of coulomb over belt speed",
         "velocity": "Velocity amplitude over belt speed",
         "energies": "Work of the loads, viscous loss, work absorbed by friction, heat in the contact over belt speed",
     }

@@ -24,8 +24,9 @@ from frictionlab.theory.rest import friction_at_rest
 
 LENGTHS = 512, 1024, 2048
 """Periods after which motions are averaged: the next length where the error is not small enough yet."""
-FEWEST_AVERAGED = 256
-"""Periods below which nothing is averaged: motions whose steps are too many are not followed as far."""
+FEWEST_AVERAGED, FEWEST_FOLLOWED = 256, 100
+"""Periods below which nothing is averaged; and those below which a motion is not followed on: each length is followed
+for so many steps at most, and three lengths would not do."""
 SMALL_ERROR = 1e-4
 """Error of the mean friction that is small enough, where the tolerance is smaller."""
 ACCURACY, FINER = 1e-7, 1e-9
@@ -74,8 +75,8 @@ class LongMotion:
 
     @property
     def may_go_on(self) -> bool:
-        """Whether it has no end yet, and its steps were not too many for the periods asked for before."""
-        stopped = self.start.stopped or 0 < len(self.means) < FEWEST_AVERAGED
+        """Whether it has no end yet, and its steps are not too many to be followed for long enough."""
+        stopped = self.start.stopped or 0 < len(self.means) < FEWEST_FOLLOWED
         return self.end is None and not stopped
 
     @property

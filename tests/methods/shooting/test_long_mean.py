@@ -9,11 +9,12 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.methods.shooting.attractors import Attractor
+from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
+from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts
 from frictionlab.methods.shooting.long_mean import LongMean, birkhoff_mean, long_mean
 from frictionlab.methods.shooting.long_motions import (
     LongMotion,
+    average_unrepeated,
     drifts,
     late_period,
     means_of_attractors,
@@ -177,6 +178,28 @@ def test_a_motion_that_beats_too_slowly_to_tell_from_one_that_grows_shares_the_m
 
     assert found.keys() == {0, 1}
     assert found[1] is found[0]
+
+
+@pytest.mark.parametrize(("a_go", "has_mean"), [(130, True), (90, False)])
+def test_a_motion_of_many_steps_is_averaged_where_three_goes_are_enough(a_go, has_mean):
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    problem = PeriodicProblem(scene, fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), 1e-8)
+    followed = FollowedStarts(problem, scene, None)
+    state = problem.state_at(5.0, None)
+    followed.reached.append(Attractor(500, 0, 0.0, 1.0, None, state[None, :]))
+
+    def few(speed, state, periods, accuracy):
+        means = RANDOM.uniform(0.2, 0.4, min(a_go, periods))
+        states = RANDOM.uniform(-1.0, 1.0, (len(means), len(state)))
+        return Transient(0, means, states, states[-1], 0.0)
+
+    problem.followed_on = few
+    average_unrepeated(problem, scene, followed)
+
+    assert (followed.reached[0].average is not None) is has_mean
+    assert followed.reached[0].followed == (3 * a_go if has_mean else 500)
 
 
 def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():

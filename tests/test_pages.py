@@ -80,6 +80,18 @@ def test_the_pages_of_the_python_interface_have_every_public_name() -> None:
     assert sorted(set(fl.__all__) - shown) == []
 
 
+def test_the_table_of_parts_in_si_units_has_every_number_that_is_theirs() -> None:
+    rows = re.findall(
+        r"^\| `(Dimensional\w+)` \| (.*) \|$", (DOCS / "api_scenes.md").read_text(), re.MULTILINE
+    )
+
+    assert {name for name, _ in rows} == {name for name in fl.__all__ if re.match(r"Dimensional\w", name)}
+    for name, told in rows:
+        own = getattr(fl, name).model_fields
+        counterpart = getattr(fl, name.removeprefix("Dimensional")).model_fields
+        assert set(own) - set(counterpart) <= set(re.findall(r"`(\w+)`", told)) <= set(own)
+
+
 def test_the_gallery_shows_every_study_that_it_speaks_of() -> None:
     gallery = runpy.run_path(str(DOCS / "gallery" / "make.py"))
     shown = gallery["exhibits"]()

@@ -16,6 +16,8 @@ SETTING = {
     ">>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)",
     ">>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, "
     "drive=fl.Drive(unbalance=10, frequency=1))",
+    ">>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))",
+    ">>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])",
 }
 """Lines that nearly every example begins with; the pages show them once."""
 CODE = re.compile(r"(``[^`]+``)")
@@ -27,7 +29,7 @@ MADE_BY_OTHERS = "SteadyState", "Run", "Comparison", "Needs", "Study"
 
 
 def _process(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    text, example = _without_example(lines)
+    text, example = _without_example(lines, f"fl.{name.rpartition('.')[2]}(")
     handed = what == "class" and name.rpartition(".")[2] in MADE_BY_OTHERS
     parameters = {} if handed or what not in ("function", "class", "method") else _parameters(obj)
     text, entries = _without_entries(text, list(parameters))
@@ -36,15 +38,15 @@ def _process(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: l
     lines[:] = [*_plain(text).splitlines(), "", *table, "", *raised, "", *example]
 
 
-def _without_example(lines: list[str]) -> tuple[str, list[str]]:
-    """The text, and the example up to the next empty line without what all examples begin with."""
+def _without_example(lines: list[str], call: str) -> tuple[str, list[str]]:
+    """The text, and the example up to the next empty line without what all examples begin with, but for this call."""
     text: list[str] = []
     example: list[str] = []
     inside = False
     for line in lines:
         inside = line.startswith(">>>") or (inside and line != "")
         (example if inside else text).append(line)
-    return "\n".join(text), [line for line in example if line not in SETTING]
+    return "\n".join(text), [line for line in example if line not in SETTING or call in line]
 
 
 def _parameters(obj: Any) -> dict[str, inspect.Parameter]:
@@ -179,8 +181,8 @@ def _linked(name: re.Match[str]) -> str:
 def _short(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, args: str | None, back: str | None
 ) -> Any:
-    """No list of parameters behind the name of a class: its table has them."""
-    return ("", None) if what == "class" else (args, back)
+    """No list of parameters behind the name of a class or function: the table has them."""
+    return ("", None) if what == "class" else ("()", None) if what == "function" else (args, back)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 COMMON = {
     "scene": "what moves, and what shakes it",
     "law": "of friction",
+    "laws": "one, a list, or a mapping label -> law",
     "study": "a file, what one says, or a ``Study``",
     "out": "the folder for results",
     "method": "a name, or a method such as ``fl.March(steps=1000)``",

@@ -8,8 +8,6 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-LEAST_CONTRAST = 3.0
-"""Of a line against white (WCAG 2.1, 1.4.11)."""
 _WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 
 

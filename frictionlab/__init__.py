@@ -59,6 +59,7 @@ _HOMES = {
     "attractors": "frictionlab.runner.api",
     "compare": "frictionlab.notebook.comparison",
     "curve": "frictionlab.runner.api",
+    "fit": "frictionlab.fitting.api",
     "needs": "frictionlab.least_model.needs",
     "run": "frictionlab.runner.api",
     "sensitivities": "frictionlab.sensitivity.mean",

@@ -76,6 +76,9 @@ ARROWS = {
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
         "charts": "columns printable scene study theory units",
         "report": "charts columns printable quantities registry results runner scene study units",
+        "fitting": (
+            "charts compile dynamics faults laws mistakes printable quantities report runner scene study"
+        ),
         "notebook": "charts columns report results runner scene study units",
         "explore": "charts columns report results runner units",
         "scaffold": "registry runner",
@@ -89,7 +92,7 @@ ARROWS = {
             "methods.reduced theory units"
         ),
         "cli": (
-            "bench charts columns explore faults least_model mistakes printable registry report results "
+            "bench charts columns explore faults fitting least_model mistakes printable registry report results "
             "runner scaffold study testing units"
         ),
     }.items()
@@ -103,7 +106,7 @@ OUTSIDE = {
         "pydantic": "mistakes quantities laws scene methods registry study bench testing",
         "numpy": (
             "quantities compile theory shape orbit numerics dynamics methods study onsets results runner "
-            "scene charts notebook bench testing least_model sensitivity laws.arrays"
+            "scene charts notebook bench testing least_model sensitivity fitting laws.arrays"
         ),
         "hypothesis": "testing",
         "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions
@@ -111,14 +114,14 @@ OUTSIDE = {
         "pint": "units.text",
         "flint": "methods.exact.proof",
         "ruamel": "study runner",
-        "pandas": "results runner charts report notebook explore cli least_model sensitivity units",
+        "pandas": "results runner charts report notebook explore cli least_model sensitivity fitting units",
         "xarray": "notebook",
         "pyarrow": "results runner",
         "tqdm": "runner",  # inside a function: it is used by long runs in a notebook alone
         "matplotlib": "charts notebook.comparison bench.charts bench.pictures",  # of comparison the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",
-        "scipy": "theory numerics methods.reduced bench.peers",
+        "scipy": "theory numerics methods.reduced fitting bench.peers",
         "heyoka": "bench.peers",
         "numbalsoda": "bench.peers",
         "jinja2": "report",

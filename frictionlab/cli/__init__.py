@@ -33,7 +33,20 @@ from frictionlab.cli.output import (
 )
 
 COMMANDS = (
-    *("bench", "check", "columns", "explore", "laws", "methods", "needs", "new", "plot", "report", "run"),
+    *(
+        "bench",
+        "check",
+        "columns",
+        "explore",
+        "fit",
+        "laws",
+        "methods",
+        "needs",
+        "new",
+        "plot",
+        "report",
+        "run",
+    ),
     *("schema", "warm"),
 )
 """Each is the function ``NAME_command`` of the module of its name."""

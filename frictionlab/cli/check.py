@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frictionlab.cli import options
+from frictionlab.cli.measured import at_measured
 from frictionlab.cli.output import metered, print_doubts, print_records, print_result
 from frictionlab.columns import BELT_SPEEDS
 
@@ -40,7 +41,7 @@ def check_command(
     from frictionlab.runner.plan import plan
     from frictionlab.runner.price import MOST, prices
 
-    jobs = batch.jobs(study, None, overrides, law_files, plugins)
+    jobs = at_measured(batch.jobs(study, None, overrides, law_files, plugins))
     for job in jobs:
         print_doubts(job.study)
     planned = [(job.name, plan(job.study)) for job in jobs]

@@ -13,6 +13,7 @@ import click
 
 from frictionlab.cli import options
 from frictionlab.cli.figures import draw_into, figure_data
+from frictionlab.cli.measured import at_measured
 from frictionlab.cli.output import (
     BROKEN_PLUGIN,
     FAILED,
@@ -152,7 +153,7 @@ def run_command(**given: Any) -> int:
 
     asked = RunOptions(**given)
     asked.check()
-    jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files, asked.plugins)
+    jobs = at_measured(batch.jobs(asked.study, asked.out, asked.changes, asked.law_files, asked.plugins))
     if asked.cache is not None and asked.cache.exists() and not asked.cache.is_dir():
         raise click.UsageError(f"--cache: {asked.cache} is a file, not a folder")
     batch.check_folders(jobs, asked.existing, alone=asked.part is None)

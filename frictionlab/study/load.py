@@ -45,7 +45,7 @@ def read_back(path: Path, codes: Mapping[str, str]) -> Study:
 
     Raises StudyError with every mistake.
     """
-    values = read_values(read_file(path), folder=path.parent, bring=saved_law_reader(codes))
+    values = read_values(read_file(path), folder=path.parent, bring=saved_law_reader(codes), with_files=False)
     return Study(**values, path=path)
 
 

@@ -13,6 +13,7 @@ from frictionlab.quantities import dimensions
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import FRICTION, LINKED, STATIC, GridValue
 from frictionlab.study.choices import items, label_of, law_choice, method_choice, note_equal_labels
+from frictionlab.study.data import SLIP_ALONE, read_data
 from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.figure_options import read_figure_options
 from frictionlab.study.grid import StudyGrid
@@ -27,7 +28,7 @@ from frictionlab.study.yaml_source import Source
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
-    *("sweep", "expect", "keep", "columns", "limit", "figures"),
+    *("sweep", "expect", "keep", "columns", "limit", "figures", "data", "free"),
 )
 KEPT = {"orbit": 2, "attractors": 1, "harmonics": 1}
 """What ``keep`` may ask for, and the least count of each."""
@@ -38,16 +39,22 @@ HERE = FilePath()
 
 
 def read_values(
-    source: Source, overrides: Sequence[str] = (), folder: FilePath = HERE, bring: LawReader = read_laws
+    source: Source,
+    overrides: Sequence[str] = (),
+    folder: FilePath = HERE,
+    bring: LawReader = read_laws,
+    with_files: bool = True,
 ) -> dict[str, Any]:
     """The values of a ``Study``. Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
 
-    overrides: ``path=value``. folder: that of the law files it names.
+    overrides: ``path=value``. folder: that of the law files and measurements it names. with_files: whether
+    measurements have to be there.
     """
     if isinstance(source.tree, dict):
         apply_overrides(source, overrides)
     notes = Notes(source.notes)
-    told = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes)).values()
+    data = folder if with_files else None
+    told = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes), data).values()
     if told is None or notes.all:
         raise StudyError(source.located(notes.all))
     return told
@@ -56,8 +63,14 @@ def read_values(
 class _StudyReader:
     """One pass over the values of a study: laws before sweeps, sweeps before the scene, the table last."""
 
-    def __init__(self, source: Source, notes: Notes, bring: Callable[[dict[str, Any]], StudyLaws]) -> None:
-        self._source, self._notes, self._bring = source, notes, bring
+    def __init__(
+        self,
+        source: Source,
+        notes: Notes,
+        bring: Callable[[dict[str, Any]], StudyLaws],
+        data_folder: FilePath | None,
+    ) -> None:
+        self._source, self._notes, self._bring, self._data_folder = source, notes, bring, data_folder
         self._tree: dict[str, Any] = source.tree
         self._known = registry.Laws()
         self._labels: dict[str, tuple[str, ...] | None] = {}
@@ -66,6 +79,8 @@ class _StudyReader:
     def values(self) -> dict[str, Any] | None:
         if self._notes.mapping(self._tree, ()) is None:
             return None
+        if "data" in self._tree:
+            self._tree.setdefault("scene", dict(SLIP_ALONE))
         self._keys()
         brought = self._bring(self._tree)
         self._known = brought.laws
@@ -156,6 +171,7 @@ class _StudyReader:
         limit = notes.mapping(tree.get("limit", {}), ("limit",), (LIMIT_KEY,)) or {}
         if LIMIT_KEY in limit:
             told[LIMIT_KEY] = notes.positive(limit[LIMIT_KEY], ("limit", LIMIT_KEY))
+        told |= read_data(tree, notes, self._data_folder)
         if "figures" in tree:
             told["figures"] = read_figure_options(tree["figures"], self._labels["laws"], notes)
         return told

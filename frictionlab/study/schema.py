@@ -16,6 +16,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
+from frictionlab.study.data import SPACINGS
 from frictionlab.study.figure_options import EVERY, FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
 from frictionlab.study.ranges import ENDS, SpeedRange, SweepRange
@@ -37,6 +38,9 @@ _KEYS = {
     "limit": "what a point may cost",
     "figures": "how figures are drawn",
     "keep": "what to write beside the table",
+    "data": "measurements: `frictionlab fit` fits to them, run and check solve at their belt speeds",
+    "file": "a file, or a list of files, .csv, .tsv or .parquet, from the study's folder; text may be .gz",
+    "free": "ranges of the numbers that `frictionlab fit` may change: of laws by name, of the scene by path",
     LIMIT_KEY: "seconds that a point may take, compiling left out, until it counts as killed",
     "orbit": "samples per period of every orbit, written to orbits.parquet",
     "attractors": "starts followed at every belt speed; all states they end in are written to attractors.csv",
@@ -62,6 +66,7 @@ _KEYS = {
     "measure": "the measure that the verdict is read from; area where left out",
 }
 """What the keys of a study mean, apart from those of scenes, laws and methods, whose docstrings tell them."""
+OURS_AND_THEIRS = "how the files call our columns, such as {belt_speed: v, mean_friction: mu_bar}"
 _NUMBER = {"type": "number"}
 _WORD_OR_NUMBER: dict[str, Any] = {
     "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
@@ -112,6 +117,14 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
             "oneOf": [{"const": EVERY}, _record(FigureOptions, definitions)],
             "description": _KEYS["figures"],
         },
+        "data": _closed_object(
+            {
+                "file": {"oneOf": [_TEXT, {"type": "array", "items": _TEXT, "minItems": 1}]},
+                "columns": {"type": "object", "additionalProperties": _TEXT, "description": OURS_AND_THEIRS},
+            },
+            ["file"],
+        ),
+        "free": {"type": "object", "additionalProperties": _free_range()},
         "keep": _closed_object(
             {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
         ),
@@ -122,6 +135,13 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
         **_closed_object(properties, list(reader.REQUIRED)),
         "$defs": definitions,
     }
+
+
+def _free_range() -> dict[str, Any]:
+    pair = {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2}
+    told = "how the search is spread over the range; log where left out and the ends are a hundredfold apart"
+    ends = {"from": _NUMBER, "to": _NUMBER, "spacing": {"enum": list(SPACINGS), "description": told}}
+    return {"oneOf": [pair, _closed_object(ends, ["from", "to"])]}
 
 
 def schema_text(laws: registry.Laws = registry.INSTALLED_LAWS) -> str:

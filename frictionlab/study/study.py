@@ -14,6 +14,7 @@ from frictionlab.mistakes.as_typed import typed
 from frictionlab.registry.law_file import LawFile
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import FRICTION, LINKED
+from frictionlab.study.data import DataFiles
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 from frictionlab.study.grid import StudyGrid
 from frictionlab.study.objects import values_of_objects
@@ -35,6 +36,7 @@ class Study(StudyGrid):
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
     keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
     harmonic of velocity and friction to keep, None for none.
+    data: measured files, and free: ranges by name of what ``frictionlab fit`` may change.
     columns: result columns and groups asked for, None for the default ones. seconds_per_point: the time a point may
     take [s]. figures: how they are drawn. plugins: its law files. code: SHA-256 of every law that is not
     frictionlab's own.
@@ -54,6 +56,8 @@ class Study(StudyGrid):
     keep_orbit: int | None = None
     keep_attractors: int | None = None
     keep_harmonics: int | None = None
+    data: DataFiles | None = None
+    free: Mapping[str, Any] | None = None
     columns: tuple[str, ...] | None = None
     seconds_per_point: float = SECONDS_PER_POINT
     figures: FigureOptions = USUAL_FIGURES
@@ -139,6 +143,10 @@ class Study(StudyGrid):
             told["limit"] = {LIMIT_KEY: self.seconds_per_point}
         if figures := self.figures.resolved():
             told["figures"] = figures
+        if self.data is not None:
+            told["data"] = self.data.resolved()
+        if self.free:
+            told["free"] = natural(dict(self.free))
         if self.expect:
             told["expect"] = [expectation.resolved() for expectation in self.expect]
         return told

@@ -1,0 +1,106 @@
+"""A fit: what was measured with what each law says of it, what is left, and how far neighbours in that are alike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from frictionlab.charts.sheet import Heading, Sheet
+from frictionlab.charts.style import CYCLE, STYLE, write_figure
+from frictionlab.columns import word
+from frictionlab.printable import printable
+
+POINTS_SHOWN = 2000
+"""Of a path of slip in the first picture: some of its middle, one after the other."""
+MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
+LAGS = 200
+
+
+def fit_figure(found: Any, title: str = "") -> Figure:
+    """Three pictures: measured and fitted; residuals along belt speed or time; their autocorrelation."""
+    looks = [CYCLE[place % len(CYCLE)] for place in range(len(found.fitted))]
+    entries: list[Any] = [Line2D([], [], label="measured", **MEASURED)]
+    entries += [
+        Line2D([], [], label=each.model.label, **look) for each, look in zip(found.fitted, looks, strict=True)
+    ]
+    with mpl.rc_context(STYLE):
+        sheet = Sheet.blank(3, Heading(printable(title), "double"), entries)
+        first, second, third = (sheet.axes(place) for place in range(3))
+        (_draw_loops if found.measured.is_path else _draw_measured)(first, found, looks)
+        _draw_left(second, found, looks)
+        _draw_alike(third, found, looks)
+    return sheet.figure
+
+
+def draw_fit(found: Any, title: str, folder: Path) -> list[Path]:
+    """Draw a fit into a folder; the files. Raises OSError where it cannot be written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with mpl.rc_context(STYLE):
+        return write_figure(fit_figure(found, title), folder / "fit")
+
+
+def _draw_measured(axes: Axes, found: Any, looks: list[Any]) -> None:
+    """Mean friction against belt speed, a line for each law and scene."""
+    measured = found.measured
+    table, values = measured.table, measured.values
+    speeds = table[measured.along].to_numpy(dtype=float)
+    errors = None if measured.sigma is None else measured.sigma
+    axes.errorbar(speeds, values, yerr=errors, elinewidth=0.7, zorder=1, **MEASURED)
+    inputs = [name for name in table if name.startswith("scene.")]
+    groups = list(table.groupby(inputs, sort=False).indices.values()) if inputs else [np.arange(len(table))]
+    for each, look in zip(found.fitted, looks, strict=True):
+        for places in groups:
+            rising = places[np.argsort(speeds[places], kind="stable")]
+            axes.plot(speeds[rising], each.said[rising], **look)
+    axes.set(xlabel=word(_input_of(measured.along)), ylabel=word("mean_friction"))
+
+
+def _draw_loops(axes: Axes, found: Any, looks: list[Any]) -> None:
+    """Friction against slip, some of the path."""
+    table, count = found.measured.table, len(found.measured.values)
+    first = max(0, count // 2 - POINTS_SHOWN // 2)
+    shown = slice(first, first + POINTS_SHOWN)
+    slip = table["slip"].to_numpy(dtype=float)[shown]
+    axes.plot(slip, found.measured.values[shown], zorder=1, **MEASURED | {"markersize": 1.2})
+    for each, look in zip(found.fitted, looks, strict=True):
+        axes.plot(slip, each.said[shown], **look)
+    axes.set(xlabel="slip", ylabel="friction coefficient")
+
+
+def _draw_left(axes: Axes, found: Any, looks: list[Any]) -> None:
+    """Fitted less measured; of a path that part which the first picture shows."""
+    along = found.measured.table[found.measured.along].to_numpy(dtype=float)
+    chosen = np.argsort(along, kind="stable")
+    if found.measured.is_path:
+        first = max(0, len(chosen) // 2 - POINTS_SHOWN // 2)
+        chosen = chosen[first : first + POINTS_SHOWN]
+    for each, look in zip(found.fitted, looks, strict=True):
+        own = (
+            {"marker": ".", "markersize": 3.0, "linewidth": 0.6} if len(chosen) < 200 else {"linewidth": 0.5}
+        )
+        axes.plot(along[chosen], each.raw[chosen], **look | own)
+    axes.axhline(0.0, color="0.5", linewidth=0.7)
+    name = "time" if found.measured.is_path else word(_input_of(found.measured.along))
+    axes.set(xlabel=name, ylabel="fitted less measured")
+
+
+def _draw_alike(axes: Axes, found: Any, looks: list[Any]) -> None:
+    """Autocorrelation of what is left, along belt speed or time; within the dashes it may be chance."""
+    along = found.measured.table[found.measured.along].to_numpy(dtype=float)
+    order, count = np.argsort(along, kind="stable"), len(along)
+    lags = min(LAGS, count // 2)
+    for each, look in zip(found.fitted, looks, strict=True):
+        axes.plot(range(lags + 1), each.autocorrelation(order, lags), **look)
+    for side in (-1.0, 1.0):
+        axes.axhline(side * 2.0 / np.sqrt(count), color="0.5", linewidth=0.7, linestyle=(0, (4, 2)))
+    axes.set(xlabel="lag [rows]", ylabel="autocorrelation")
+
+
+def _input_of(along: str) -> str:
+    return "scene.belt_speed" if along == "belt_speed" else "scene.dimensional.belt_speed_m_per_s"

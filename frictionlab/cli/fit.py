@@ -1,0 +1,92 @@
+"""``fit``: the numbers of laws and of a scene, from measurements."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frictionlab.cli import options
+from frictionlab.cli.output import (
+    FAILED,
+    OK,
+    WRONG,
+    CommandError,
+    metered,
+    print_records,
+    print_result,
+)
+
+if TYPE_CHECKING:
+    from frictionlab.fitting.result import FittedLaws
+    from frictionlab.study import Plugins
+
+
+@click.command("fit")
+@click.argument("study", type=options.PATH)
+@options.folder("fits/<study name>")
+@options.overrides
+@options.law_files
+@options.no_plugins
+@options.as_json
+def fit_command(
+    study: Path,
+    out: Path | None,
+    overrides: tuple[str, ...],
+    law_files: tuple[Path, ...],
+    plugins: Plugins,
+    as_json: bool,
+) -> int:
+    """FittedLaws the laws of STUDY to the measurements that its data name, by the numbers that its free names.
+
+    fit.csv has each number with its errors and its interval of 95 %, fit_laws.csv how well each law fits and
+    foretells blocks left out, residuals.csv what is left. A figure and a page stand beside. An interrupt keeps the
+    laws that are fitted.
+    """
+    from frictionlab.fitting.api import fit_measured
+    from frictionlab.fitting.files import measured_of
+    from frictionlab.fitting.measured import WrongData
+    from frictionlab.results.table import records
+    from frictionlab.study import load_study
+
+    asked = load_study(study, overrides, law_files, plugins)
+    if asked.data is None or not asked.free:
+        missing = "data" if asked.data is None else "free"
+        example = "data: {file: measured.csv}" if missing == "data" else "free: {mu: [0.1, 1.0]}"
+        raise CommandError(WRONG, f"{study}: a study to fit has data and free; write {example}")
+    try:
+        measured = measured_of(asked)
+        laws = [choice.law_class(**choice.parameters, label=choice.label) for choice in asked.laws]
+        with metered() as meter:
+            meter.begins("fitting")
+            scene = None if measured.is_path else asked.scene
+            found = fit_measured(measured, laws, scene, asked.free, tell=meter.begins)
+    except (WrongData, ValueError) as problem:
+        raise CommandError(WRONG, str(problem)) from None
+    folder = out or Path("fits") / study.stem
+    _write(found, asked.title or study.stem, folder)
+    if as_json:
+        print_records(records(found.table))
+    else:
+        print_result("\n".join([*found.sentences, f"tables, figure and page in {folder}"]))
+    return FAILED if found.failed else OK
+
+
+def _write(found: FittedLaws, title: str, folder: Path) -> None:
+    """Tables, figure and page. Raises SaveError, FolderError."""
+    from frictionlab.runner.errors import FolderError, SaveError
+    from frictionlab.runner.files import write_whole
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise FolderError(
+            f"cannot make the folder {folder}: {problem.strerror}; give another one with -o"
+        ) from problem
+    for name, table in (("fit", found.table), ("fit_laws", found.laws), ("residuals", found.residuals)):
+        write_whole(folder / f"{name}.csv", table.to_csv(None, index=False, lineterminator="\n").encode())
+    try:
+        found.report(folder / "report.html", title)
+    except OSError as problem:
+        raise SaveError(f"cannot write the figure in {folder}: {problem.strerror or problem}") from problem

@@ -16,7 +16,7 @@ from frictionlab.charts.style import CYCLE, STYLE, write_figure
 from frictionlab.columns import word
 from frictionlab.printable import printable
 
-POINTS_SHOWN = 2000
+POINTS_SHOWN = 1000
 """Of a path of slip in the first picture: some of its middle, one after the other."""
 MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
 LAGS = 200

@@ -39,7 +39,7 @@ def alike(sentences: Iterable[str]) -> str:
     """Sentences that differ in their numbers at most as one: the least and the greatest of each number."""
     first, *others = dict.fromkeys(sentences)
     values = zip(*(_NUMBER.findall(each) for each in (first, *others)), strict=False)
-    ends = iter([" to ".join(dict.fromkeys((min(one, key=float), max(one, key=float)))) for one in values])
+    ends = iter([" ... ".join(dict.fromkeys((min(one, key=float), max(one, key=float)))) for one in values])
     return _NUMBER.sub(lambda found: next(ends, found[0]), first)
 
 

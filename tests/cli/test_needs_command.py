@@ -57,7 +57,7 @@ def test_what_holds_for_every_curve_is_told_once(study: Path, capsys: pytest.Cap
     assert lines[0] == "every curve:"
     friction = [line for line in lines if line.startswith("  friction's effect on the motion is needed")]
     assert len(friction) == 1
-    assert " to 0.0905 at belt speed 34" in friction[0]
+    assert " ... 0.0905 at belt speed 34" in friction[0]
 
 
 def test_a_folder_gets_the_table_and_the_figure_and_stdout_the_records(

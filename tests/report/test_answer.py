@@ -228,7 +228,7 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
     ),
     "why no shape is read is told by the commonest reason": (
         [shape("coulomb", None, "3 points"), shape("dahl", None, "4 points"), shape("lugre", None, "sticks")],
-        "No shape is read: 3 to 4 points; 1 curve for other reasons.",
+        "No shape is read: 3 ... 4 points; 1 curve for other reasons.",
     ),
 }
 

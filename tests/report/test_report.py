@@ -335,7 +335,7 @@ def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Ru
     saved.table["model"] = ["closed form (V_lin = 50)", "closed form (V_lin = 26.25)", "legs"]
 
     assert page_of(saved).table("What produced the numbers")[1:] == [
-        ["fake", "closed form (V_lin = 26.25 to 50)", "2 points", "coulomb"],
+        ["fake", "closed form (V_lin = 26.25 ... 50)", "2 points", "coulomb"],
         ["fake", "legs", "1 point", "coulomb"],
     ]
 

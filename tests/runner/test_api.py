@@ -566,7 +566,7 @@ def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> No
     lines = summary(done).splitlines()
 
     assert [line for line in lines if line.startswith("model")] == [
-        f"model 1: closed form: belt speed >= 0 to {len(models) - 2}",
+        f"model 1: closed form: belt speed >= 0 ... {len(models) - 2}",
         "model 2: another",
     ]
     assert any(line.endswith(" 1, 2") for line in lines)

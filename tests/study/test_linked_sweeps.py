@@ -112,7 +112,7 @@ def test_a_line_or_an_axis_names_what_changes_together() -> None:
         for over in ({"linked": [together], "scene.belt_speed": [10, 20, 30]}, {"linked": [together]})
     )
 
-    words = r"normal load $\gamma^2$, with drive frequency $\Omega$"
+    words = r"normal load $\gamma^2$, with $\Omega$"
     assert lines is not None
     assert axis is not None
     assert lines.word("scene.normal_load") == axis.word(axis.abscissa) == words

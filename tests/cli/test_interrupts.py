@@ -79,7 +79,7 @@ def test_an_interrupted_command_ends_neither_its_caller_nor_the_threads_of_its_c
     ended, over = [], threading.Event()
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     monkeypatch.setattr(cli.os, "_exit", ended.append)
-    monkeypatch.setattr(interrupts, "PATIENCE", 0.05)
+    monkeypatch.setattr(interrupts, "NOTICED_WITHIN", 0.05)
     monkeypatch.setattr(cli, "_invoke", command)
     threading.Thread(target=over.wait, daemon=True).start()
     try:

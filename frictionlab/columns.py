@@ -288,7 +288,7 @@ def given(names: Iterable[str]) -> list[str]:
     """The columns of scene and law values in the units in which they were given."""
     columns = [name for name in names if name.startswith(("scene.", "law.")) and not name.startswith(SCALED)]
     in_si = [name for name in columns if name.startswith((_GIVEN_IN_SI, "law."))]
-    return in_si if belt_speed(columns) != BELT_SPEED else columns
+    return in_si if any(name.startswith(_GIVEN_IN_SI) for name in columns) else columns
 
 
 def selected(asked: Iterable[str] | None, needed: Iterable[str] = ()) -> frozenset[str]:

@@ -246,3 +246,18 @@ def test_a_measure_of_curves_is_compared_as_a_column_is(
 
     assert verdict.passed is passed
     assert found in verdict.sentence
+
+
+def test_curves_in_si_units_are_compared_at_inputs_as_given() -> None:
+    curves = pd.DataFrame(
+        {
+            "law": ["coulomb"] * 2,
+            "method": ["auto"] * 2,
+            "scene.drive.frequency": [1.0, 2.0],
+            "scene.dimensional.drive.frequency_rad_per_s": [10.0, 20.0],
+            "shape_area": [0.1, -0.2],
+        }
+    )
+    slow = {"scene.dimensional.drive.frequency_rad_per_s": 10.0}
+
+    assert judge(Expectation(where={}, minus=slow, column="shape_area", below=-0.29), TABLE, curves).passed

@@ -40,6 +40,7 @@ from frictionlab.columns import unit_shown, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
+KEPT_LEVEL = 1e-6  # of mean friction beyond V_lin: what differs by less is level
 LEAST_SHARE = 1e-3  # of the largest number of a curve on a logarithmic axis
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LIKE_RANGES = 2.5  # ranges of pictures of one quantity that differ by less have one scale
@@ -232,12 +233,12 @@ class _Picture:
 def _with_kinks(
     x: CurveNumbers, y: CurveNumbers, kinks: Sequence[float]
 ) -> tuple[CurveNumbers, CurveNumbers]:
-    """The points of a curve and, at V_lin, that of the next one beyond: from there on mean friction is the same."""
+    """The points of a curve and, at V_lin, one of the level that it keeps from there on, where it keeps one."""
     for kink in kinks:
         beyond = x >= kink if kink > 0.0 else x <= kink
         places = np.flatnonzero(beyond & np.isfinite(y))
-        if places.size and kink not in x:
-            level = y[places[0] if kink > 0.0 else places[-1]]
+        level = float(y[places].mean()) if places.size else 0.0
+        if places.size and kink not in x and np.abs(y[places] - level).max() <= KEPT_LEVEL * abs(level):
             at = int(np.searchsorted(x, kink))
             x, y = np.insert(x, at, kink), np.insert(y, at, level)
     return x, y

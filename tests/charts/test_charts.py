@@ -421,6 +421,9 @@ def test_the_kink_lies_at_v_lin_between_points_of_a_sweep(resonance: pd.DataFram
     (at,) = np.flatnonzero(np.isclose(x, 50.0))
     assert y[at] == pytest.approx(0.4)
     assert len(x) == len(coarse) + 1
+    rising = coarse.assign(mean_friction=coarse["mean_friction"] + 1e-3 * coarse["scene.belt_speed"])
+    (x, _), *_ = curves_of(_figure(rising).axes[0])
+    assert len(x) == len(coarse)
 
 
 def test_where_a_state_is_not_unique_other_quantities_have_a_mark(resonance: pd.DataFrame) -> None:

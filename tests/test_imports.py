@@ -77,7 +77,7 @@ ARROWS = {
         "charts": "columns printable scene study theory units",
         "report": "charts columns printable quantities registry results runner scene study units",
         "fitting": (
-            "charts compile dynamics faults laws mistakes printable quantities report runner scene study"
+            "charts compile dynamics faults laws mistakes printable quantities report runner scene study theory"
         ),
         "notebook": "charts columns report results runner scene study units",
         "explore": "charts columns report results runner units",

@@ -1,0 +1,185 @@
+"""The nearest curve of another model: which numbers bring one curve of mean friction closest to another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize
+
+from frictionlab.fitting.free import Model, free_numbers
+from frictionlab.fitting.measured import Measurements, given_measurements
+from frictionlab.fitting.residuals import FIT_TOLERANCE, Residuals
+from frictionlab.fitting.search import STARTS, search
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Floats
+from frictionlab.runner.api import curve
+from frictionlab.runner.arguments import given_law, given_scene, given_speeds
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.linear import friction_free_velocity
+
+Norm = Literal["largest", "rms"]
+USUAL_POINTS, USUAL_END = 40, 1.2
+"""Belt speeds where none are given, and their end over V_lin."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equivalent:
+    """The nearest curve of a model to another one.
+
+    values: its free numbers. distance: of mean friction coefficients at the belt speeds, the largest or the root mean
+    square, as asked; distance_error: bound on its error from those of both curves; at: the belt speed of the
+    largest; rms: the root mean square. table: a row for each value of what was varied. curves: both, row by row.
+    """
+
+    values: dict[str, float]
+    distance: float
+    distance_error: float
+    at: float
+    rms: float
+    table: pd.DataFrame
+    curves: pd.DataFrame
+
+    def plot(self) -> Any:
+        """A matplotlib figure: both curves, or the distance over what was varied.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> stiff = fl.Dahl(mu=0.4, presliding_length=0.1)
+        >>> other = (scene, fl.Coulomb(mu=0.4), {"mu": (0.3, 0.5)})
+        >>> found = fl.equivalent((scene, stiff), other, belt_speed=[10, 40])
+        >>> found.plot().savefig("equivalent.svg")
+        """
+        from frictionlab.charts.equivalent import equivalent_figure  # with matplotlib, which takes a second
+
+        return equivalent_figure(self.table, self.curves)
+
+
+def equivalent(
+    of: tuple[Scene, FrictionLaw],
+    among: tuple[Scene, FrictionLaw, Mapping[str, Any]],
+    belt_speed: ArrayLike | None = None,
+    norm: Norm = "largest",
+    over: Mapping[str, Sequence[float]] | None = None,
+    starts: int = STARTS,
+) -> Equivalent:
+    """The numbers that bring the curve of another model nearest to that of this one.
+
+    of: a scene and a law. among: another scene and law, and ranges of its free numbers as for ``fit``. belt_speed:
+    40 up to 1.2 V_lin where left out. norm: whether the largest distance is made small, or its root mean square.
+    over: one input of both scenes and its values, such as ``{"drive.frequency": [1, 1.5]}``: the numbers are found
+    anew for each; what is told beside the table is the first.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> other = (scene, fl.Coulomb(mu=0.3), {"mu": (0.1, 1.0)})
+    >>> found = fl.equivalent((scene, fl.Coulomb(mu=0.4)), other, belt_speed=[5, 20, 40])
+    >>> round(found.values["mu"], 6), found.distance < 1e-7
+    (0.4, True)
+
+    Raises ValueError or TypeError for what makes no sense, or where a curve has no mean friction.
+    """
+    if norm not in ("largest", "rms"):
+        raise ValueError(f"norm must be 'largest' or 'rms', got {norm!r}")
+    one, other = given_scene(of[0]), given_scene(among[0])
+    laws = given_law(of[1]), given_law(among[1])
+    free = free_numbers(among[2], [laws[1]], other)[0]
+    if over is not None and len(over) != 1:
+        raise ValueError(f"over must name one input, such as {{'drive.frequency': [1, 1.5]}}, got {over!r}")
+    path, values = next(iter(over.items())) if over else ("", [math.nan])
+    rows, first = [], None
+    for value in values:
+        scenes = [_changed(scene, path, value) for scene in (one, other)]
+        found = _nearest(scenes[0], laws[0], Model(laws[1], scenes[1], free), belt_speed, norm, starts)
+        first = first or found
+        own = {path: value} if path else {}
+        rows.append(
+            own
+            | found.values
+            | {"distance": found.distance, "distance_error": found.distance_error}
+            | {"at": found.at, "rms": found.rms}
+        )
+    assert first is not None
+    table = pd.DataFrame(rows)
+    return Equivalent(
+        first.values, first.distance, first.distance_error, first.at, first.rms, table, first.curves
+    )
+
+
+def _changed(scene: Scene, path: str, value: float) -> Scene:
+    """The scene with this input, where it has it; a prescribed slip takes the frequency of a drive as its own."""
+    if not path:
+        return scene
+    if scene.degrees_of_freedom == 0 and path == "drive.frequency":
+        path = "slip.frequency"
+    return scene.with_(**{path: value})
+
+
+def _nearest(
+    scene: Scene, law: FrictionLaw, model: Model, belt_speed: ArrayLike | None, norm: Norm, starts: int
+) -> Equivalent:
+    if belt_speed is None:
+        end = USUAL_END * float(friction_free_velocity(scene))
+        speeds = np.linspace(end / USUAL_POINTS, end, USUAL_POINTS)
+    else:
+        speeds = np.unique(given_speeds(belt_speed))
+    target = curve(scene, law, speeds, "auto", FIT_TOLERANCE, columns=["mean_friction"], progress=False)
+    if target["mean_friction"].isna().any():
+        row = target[target["mean_friction"].isna()].iloc[0]
+        raise ValueError(
+            f"the curve to come near has no mean friction everywhere: {row['status']}: {row['reason']}"
+        )
+    in_si = scene.dimensional is not None
+    name = "belt_speed_m_per_s" if in_si else "belt_speed"
+    measured: Measurements = given_measurements(
+        {name: speeds, "mean_friction": target["mean_friction"]}, "of", in_si
+    )
+    residuals = Residuals(model, measured)
+    shares = search(residuals, starts).best.shares
+    if norm == "largest":
+        shares = _least_largest(residuals, shares)
+    apart = residuals.raw(shares)
+    if residuals.unanswered:
+        raise ValueError(
+            f"the nearest curve has no mean friction at {residuals.unanswered} of {len(apart)} belt speeds"
+        )
+    at = int(np.argmax(np.abs(apart)))
+    rms = float(np.sqrt(np.mean(apart**2)))
+    largest = float(abs(apart[at]))
+    error = float(target["error"].max()) + residuals.error
+    both = pd.DataFrame({"belt_speed": speeds, "of": measured.values, "among": residuals.said(shares)})
+    told = largest if norm == "largest" else rms
+    return Equivalent(model.values(shares), told, error, float(speeds[at]), rms, pd.DataFrame(), both)
+
+
+def _least_largest(residuals: Residuals, start: Floats) -> Floats:
+    """From the least squares to the least largest distance: a bound t on all distances is made small."""
+    scale = max(float(np.abs(residuals.raw(start)).max()), 1e-12)
+
+    def room(point: Floats) -> Floats:
+        apart = residuals.raw(point[:-1]) / scale
+        return np.concatenate([point[-1] - apart, point[-1] + apart])
+
+    def slopes(point: Floats) -> Floats:
+        own = residuals.slopes(point[:-1]) / scale
+        ones = np.ones((len(own), 1))
+        return np.vstack([np.hstack([-own, ones]), np.hstack([own, ones])])
+
+    gradient = np.append(np.zeros(len(start)), 1.0)
+    done = minimize(
+        lambda point: float(point[-1]),
+        np.append(start, 1.0),
+        jac=lambda point: gradient,
+        bounds=[*[(0.0, 1.0)] * len(start), (0.0, None)],
+        constraints={"type": "ineq", "fun": room, "jac": slopes},
+        method="SLSQP",
+        options={"maxiter": 60, "ftol": 1e-9},
+    )
+    found = np.clip(done.x[:-1], 0.0, 1.0)
+    return found if np.abs(residuals.raw(found)).max() <= scale else start

@@ -24,7 +24,7 @@ CODE = re.compile(r"(``[^`]+``)")
 MARKS = re.compile(r"([\\*|_`])")
 UNIT = r"(?: \[[^\]]*\])?"
 RAISED = re.compile(r"(?<![\w`.])([A-Z]\w*(?:Error|Plugin|Values)|Interrupted)\b")
-MADE_BY_OTHERS = "SteadyState", "Run", "Comparison", "Needs", "Study"
+MADE_BY_OTHERS = "SteadyState", "Run", "Comparison", "Needs", "Study", "FittedLaws"
 """Classes that a user is handed: what they hold is told in words."""
 
 
@@ -33,7 +33,8 @@ def _process(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: l
     handed = what == "class" and name.rpartition(".")[2] in MADE_BY_OTHERS
     parameters = {} if handed or what not in ("function", "class", "method") else _parameters(obj)
     text, entries = _without_entries(text, list(parameters))
-    table = _table(parameters, entries) if (entries if what == "method" else parameters) else []
+    shared = {each for each in parameters if what == "function" and _says_nothing_new(each, entries)}
+    table = _table(parameters, entries, shared) if (entries if what == "method" else parameters) else []
     text, raised = _without_raised(text)
     lines[:] = [*_plain(text).splitlines(), "", *table, "", *raised, "", *example]
 
@@ -122,9 +123,22 @@ SYMBOLS = {
 SYMBOLS |= {"beta_1": "β₁", "beta_2": "β₂", "gamma^2": "γ²"}
 
 
-def _table(parameters: dict[str, inspect.Parameter], entries: dict[str, tuple[str, str, str]]) -> list[str]:
-    """A row for each parameter, in their order; those told of together are one."""
-    together = {name for told, _, _ in entries.values() for name in told.split(", ")[1:]}
+def _says_nothing_new(name: str, entries: dict[str, tuple[str, str, str]]) -> bool:
+    """Whether the table of what many functions take says all of this parameter."""
+    _, _, meaning = entries.get(name, ("", "", ""))
+    return name in SHARED and (not meaning or meaning.startswith(SHARED[name]))
+
+
+SHARED = {"scene": "", "law": "", "laws": "", "method": "", "methods": "", "executor": "", "progress": ""}
+SHARED |= {"tolerance": "absolute", "columns": "result columns"}
+"""By parameter what an entry begins with that needs no row of its own; none is as good."""
+
+
+def _table(
+    parameters: dict[str, inspect.Parameter], entries: dict[str, tuple[str, str, str]], shared: set[str]
+) -> list[str]:
+    """A row for each parameter, in their order; those told of together are one, shared ones have none."""
+    together = {name for told, _, _ in entries.values() for name in told.split(", ")[1:]} | shared
     rows = []
     for name, each in parameters.items():
         if name in together:
@@ -137,6 +151,13 @@ def _table(parameters: dict[str, inspect.Parameter], entries: dict[str, tuple[st
         rows.append([names, _type(each), _plain(limits), _plain(" ".join(meaning.split()))])
     heads = ["parameter", "type", "unit, range", "meaning"]
     columns = [0, 1, *(column for column in (2, 3) if any(row[column] for row in rows))]
+    others = (
+        [f"{'Others are' if rows else 'All are'} :ref:`the shared ones <shared-parameters>`."]
+        if shared
+        else []
+    )
+    if not rows:
+        return others
     lines = [".. list-table::", "   :header-rows: 1", "   :class: parameters", ""]
     for row in [heads, *rows]:
         cells = [row[column] for column in columns]
@@ -144,7 +165,7 @@ def _table(parameters: dict[str, inspect.Parameter], entries: dict[str, tuple[st
             f"   {'-' if column else '* -'} {cell}".replace("   - ", "     - ")
             for column, cell in enumerate(cells)
         ]
-    return lines
+    return [*lines, "", *others]
 
 
 def _default(parameter: inspect.Parameter) -> str:
@@ -181,8 +202,8 @@ def _linked(name: re.Match[str]) -> str:
 def _short(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, args: str | None, back: str | None
 ) -> Any:
-    """No list of parameters behind the name of a class or function: the table has them."""
-    return ("", None) if what == "class" else ("()", None) if what == "function" else (args, back)
+    """No list of parameters behind the name of a class: its table has them."""
+    return ("", None) if what == "class" else (args, back)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

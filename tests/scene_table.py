@@ -51,11 +51,13 @@ SCENES: dict[str, dict[str, Any]] = {
     | {"drive": DRIVE, "normal_load_variation": LOAD | {"contact": "constant"}},
     "nothing shakes it": LINE,
     "in the plane: a sine along the belt": PLANE,
-    "sines along and across": PLANE | {"transverse": LOADED},
-    "a sine at an angle": PLANE | {"drive": DRIVE | {"direction": 30}},
-    "a square wave at an angle": PLANE | {"drive": DRIVE | {"direction": 30, "waveform": "square"}},
-    "across at 3/2 of the frequency": PLANE | {"transverse": LOADED | {"load": FASTER}},
-    "the belt vibrates at an angle": PLANE | {"belt_vibration": {"velocity_amplitude": 1, "direction": 60}},
+    "in the plane: sines along and across": PLANE | {"transverse": LOADED},
+    "in the plane: a sine at an angle": PLANE | {"drive": DRIVE | {"direction": 30}},
+    "in the plane: a square wave at an angle": PLANE
+    | {"drive": DRIVE | {"direction": 30, "waveform": "square"}},
+    "in the plane: across at 3/2 of the frequency": PLANE | {"transverse": LOADED | {"load": FASTER}},
+    "in the plane: the belt vibrates at an angle": PLANE
+    | {"belt_vibration": {"velocity_amplitude": 1, "direction": 60}},
     "in the plane, normal load varies": PLANE | {"normal_load_variation": LOAD},
     "in the plane, constant contact": PLANE | {"normal_load_variation": LOAD | {"contact": "constant"}},
     "in the plane, nothing shakes it": LINE | {"transverse": PLANE["transverse"]},
@@ -86,11 +88,12 @@ def refusal(method: str, scene: str, law: str) -> str | None:
 
 
 def tables() -> str:
-    """Scenes by methods, with the laws that are taken, and below it the reasons of the refusals by their numbers."""
+    """Scenes, alike ones in a row, by methods, with the laws that are taken; below, reasons of refusals by number."""
     reasons: dict[str, int] = {}
-    rows = [
-        f"| {scene} | {' | '.join(_cell(each, scene, reasons) for each in METHODS)} |" for scene in SCENES
-    ]
+    alike: dict[str, list[str]] = {}
+    for scene in SCENES:
+        alike.setdefault(" | ".join(_cell(each, scene, reasons) for each in METHODS), []).append(scene)
+    rows = [f"| {'; '.join(scenes)} | {cells} |" for cells, scenes in alike.items()]
     head = [
         "| scene | " + " | ".join(f"`{name}`" for name in METHODS) + " |",
         "|---" * (len(METHODS) + 1) + "|",

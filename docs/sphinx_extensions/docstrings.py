@@ -24,6 +24,8 @@ CODE = re.compile(r"(``[^`]+``)")
 MARKS = re.compile(r"([\\*|_`])")
 UNIT = r"(?: \[[^\]]*\])?"
 RAISED = re.compile(r"(?<![\w`.])([A-Z]\w*(?:Error|Plugin|Values)|Interrupted)\b")
+LONGEST_OF_MEMBERS = 3
+"""Lines: a longer example of a method or property has a setting of its own, which its class shows."""
 MADE_BY_OTHERS = "SteadyState", "Run", "Comparison", "Needs", "Study", "FittedLaws"
 """Classes that a user is handed: what they hold is told in words."""
 
@@ -36,6 +38,8 @@ def _process(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: l
     shared = {each for each in parameters if what == "function" and _says_nothing_new(each, entries)}
     table = _table(parameters, entries, shared) if (entries if what == "method" else parameters) else []
     text, raised = _without_raised(text)
+    if what in ("method", "property") and len(example) > LONGEST_OF_MEMBERS:
+        example = []
     lines[:] = [*_plain(text).splitlines(), "", *table, "", *raised, "", *example]
 
 
@@ -94,7 +98,7 @@ def _without_raised(text: str) -> tuple[str, list[str]]:
     paragraphs = re.split(r"\n\n+", told)
     raised = [each.removeprefix("Raises ") for each in paragraphs if each.startswith("Raises ")]
     linked = [RAISED.sub(r":ref:`\1 <what-is-raised>`", each) for each in raised]
-    left_out = ("Raises ", "Source: ", "Sources: ")  # sources are with the formulas, in theory
+    left_out = ("Raises ", "Source: ", "Sources: ")  # what is computed, and from whom, is in theory
     kept = "\n\n".join(each for each in paragraphs if not each.startswith(left_out))
     return kept, [line for each in linked for line in [f"**Raises** {each}", ""]]
 

@@ -59,6 +59,7 @@ _HOMES = {
     "attractors": "frictionlab.runner.api",
     "compare": "frictionlab.notebook.comparison",
     "curve": "frictionlab.runner.api",
+    "discriminate": "frictionlab.fitting.discriminate",
     "equivalent": "frictionlab.fitting.equivalent",
     "fit": "frictionlab.fitting.api",
     "needs": "frictionlab.least_model.needs",

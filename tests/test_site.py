@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import re
 import subprocess
 import sys
@@ -10,26 +11,60 @@ from pathlib import Path
 
 import pytest
 
+import frictionlab as fl
+
 PROJECT = Path(__file__).parent.parent
 MISSING = [name for name in ("sphinx", "furo", "myst_parser") if importlib.util.find_spec(name) is None]
 FETCHED = re.compile(r"<(?:script|link|img|iframe|object)\b[^>]*?\b(?:src|href|data)=\"https?://[^\"]*\"")
+pytestmark = pytest.mark.skipif(bool(MISSING), reason="the site needs: pip install '.[docs]'")
 
 
-@pytest.mark.skipif(bool(MISSING), reason="the site needs: pip install '.[docs]'")
-def test_the_site_is_built_and_every_link_in_it_leads_somewhere(tmp_path: Path) -> None:
-    """Sphinx warns of pages without a place, links to nowhere, formulas it cannot read; a warning is an error."""
-    options = ["-W", "--keep-going", "--quiet", "--doctree-dir", str(tmp_path / "doctrees")]
-    command = [sys.executable, "-m", "sphinx", *options, str(PROJECT / "docs"), str(tmp_path / "site")]
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """The text of every page by its name.
+
+    Sphinx warns of pages without a place, links to nowhere, formulas it cannot read; a warning is an error.
+    """
+    site = tmp_path_factory.mktemp("site")
+    options = ["-W", "--keep-going", "--quiet", "--doctree-dir", str(site / "doctrees")]
+    command = [sys.executable, "-m", "sphinx", *options, str(PROJECT / "docs"), str(site / "pages")]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
+    found = sorted((site / "pages").rglob("*.html"))
+    return {page.relative_to(site / "pages").with_suffix("").as_posix(): page.read_text() for page in found}
 
-    pages = sorted((tmp_path / "site").rglob("*.html"))
-    shown = {page.relative_to(tmp_path / "site").with_suffix("").as_posix() for page in pages} - {"search"}
+
+def test_every_document_is_a_page_and_no_page_needs_the_network(pages: dict[str, str]) -> None:
     files = (PROJECT / "docs").rglob("*.md")
     written = {path.relative_to(PROJECT / "docs").with_suffix("").as_posix() for path in files}
-    assert written - shown == {"architecture", "tests"}  # for developers, read in the repository
-    listed = {page for page in shown - {"index"} if not page.startswith("gallery/")} | {"gallery/index"}
-    assert len(listed) <= 20, "say it on a page that there is"
-    assert {page.name: FETCHED.findall(page.read_text()) for page in pages} == {
-        page.name: [] for page in pages
+    assert written - set(pages) == {"architecture", "tests"}  # for developers, read in the repository
+    assert {name: FETCHED.findall(text) for name, text in pages.items()} == {name: [] for name in pages}
+
+
+def test_there_are_twenty_pages_at_most_besides_the_gallery(pages: dict[str, str]) -> None:
+    listed = {page for page in pages if not page.startswith("gallery/")} - {"index", "search"}
+
+    assert len(listed | {"gallery/index"}) <= 20, "say it on a page that there is"
+
+
+def test_what_scrolls_is_reached_by_keyboard(pages: dict[str, str]) -> None:
+    for text in pages.values():
+        scrolling = re.findall(r'<(?:pre|div [^>]*class="(?:table-wrapper|math )[^>]*)[^>]*>', text)
+        assert [each for each in scrolling if 'tabindex="0"' not in each] == []
+
+
+def test_python_s_pages_tell_the_type_of_every_parameter(pages: dict[str, str]) -> None:
+    text = pages["api"] + pages["api_scenes"]
+    shared = text.partition('id="shared-parameters"')[2].partition("</table>")[0]
+    entries = dict(re.findall(r'id="frictionlab\.(\w+)">(.*?)(?=<dt class="sig|</section>)', text, re.DOTALL))
+    shown = {
+        name: entry
+        for name, entry in entries.items()
+        if 'class="parameters' in entry or "shared ones" in entry
     }
+
+    assert set(shown) >= {"steady_state", "curve", "run", "Scene", "Dimensional", "LuGre", "March"}
+    for name, entry in shown.items():
+        told = re.sub(r"<[^>]+>", "", entry + shared)
+        taken = set(inspect.signature(getattr(fl, name)).parameters) - {"label"}
+        assert [parameter for parameter in taken if not re.search(rf"\b{parameter}\b", told)] == [], name

@@ -1,9 +1,9 @@
 """Friction of a law along a measured path of slip: no body, the law alone, whatever it remembers.
 
-Between two samples the slip velocity is constant. A bristle whose path is exact moves along it in one step, another
-by exponential steps short against its presliding length; other memories by classical Runge-Kutta steps, halved until
-two agree. An element that remembers whether it sticks follows the slip up to its breakaway, and slips until slip
-reverses.
+Between two samples the slip velocity is constant. A bristle whose path is exact, and deflections that yield, move
+along it in one step, another bristle by exponential steps short against its presliding length; other memories by
+classical Runge-Kutta steps, halved until two agree. An element that remembers whether it sticks follows the slip up
+to its breakaway, and slips until slip reverses.
 """
 
 from __future__ import annotations
@@ -100,6 +100,20 @@ def along_with_memory(law: Any, times: Any, slips: Any, friction: Any, memory: A
 
 
 @njit
+def along_with_yield(law: Any, times: Any, slips: Any, friction: Any, memory: Any, reach: Any) -> None:
+    """The same of deflections that follow the slip up to their reach, exactly."""
+    rates = np.zeros(memory.size)
+    for i in range(1, times.size):
+        path = slips[i] - slips[i - 1]
+        v = path / (times[i] - times[i - 1])
+        for k in range(memory.size):
+            moved = memory[k] + path
+            held = min(max(moved, -reach[k]), reach[k])
+            memory[k], rates[k] = held, v if held == moved else 0.0
+        friction[i] = law.friction(v, memory, rates)
+
+
+@njit
 def along_with_stick(law: Any, times: Any, slips: Any, friction: Any, memory: Any) -> None:
     """The same of elements that remember whether they stick; all do at the start."""
     sticks, rates, work = np.ones(memory.size), np.zeros(memory.size), np.zeros((3, memory.size))
@@ -137,8 +151,11 @@ def friction_along(law: FrictionLaw, times: Floats, slips: Floats, first: float)
         KernelCall(along_with_a_bristle, law)(*given, _bent(law, first), BRISTLE_STEP * length)
     elif isinstance(law, MemoryLaw):
         memory = _memory_at_start(law, slips, times, first)
+        reach = np.array([law.yield_deflection(k) for k in range(law.count())])
         if law.remembers_stick():
             KernelCall(along_with_stick, law)(*given, memory)
+        elif law.memory_kind == "deflections" and np.isfinite(reach).all():
+            KernelCall(along_with_yield, law)(*given, memory, reach)
         else:
             KernelCall(along_with_memory, law)(*given, memory, MOST_HALVED)
     else:

@@ -86,6 +86,24 @@ def test_numbers_of_a_memory_law_are_those_of_the_bristle_that_they_make() -> No
     assert two == pytest.approx(one, abs=1e-7)
 
 
+class SlidersInParallel(SpringsInParallel):
+    """Jenkins friction in two equal halves."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        if memory[k] * v <= 0.0 or abs(memory[k]) < self.mu / self.stiffness:
+            return v
+        return 0.0 * v
+
+    def yield_deflection(self, k: int) -> float:
+        return self.mu / self.stiffness
+
+
+def test_deflections_that_yield_are_the_slider_that_they_make() -> None:
+    one = friction_along(fl.Jenkins(mu=0.4, stiffness=4.0), TIMES, SLIPS, 0.1)
+    two = friction_along(SlidersInParallel(mu=0.4, stiffness=4.0), TIMES, SLIPS, 0.1)
+    assert two == pytest.approx(one, abs=1e-12)
+
+
 def test_the_first_sample_tells_how_far_the_bristle_is_bent() -> None:
     found = friction_along(fl.Jenkins(mu=0.4, stiffness=4.0), TIMES[:2], np.array([0.0, 1e-3]), 0.2)
     assert found[1] == pytest.approx(0.204, abs=1e-12)

@@ -75,6 +75,9 @@ ARROWS = {
         ),
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
         "charts": "columns printable scene study theory units",
+        "response": (
+            "charts laws methods.prescribed orbit quantities results runner scene sensitivity theory"
+        ),
         "report": "charts columns printable quantities registry results runner scene study units",
         "fitting": (
             "charts compile dynamics faults laws mistakes printable quantities report runner scene study theory"
@@ -106,7 +109,7 @@ OUTSIDE = {
         "pydantic": "mistakes quantities laws scene methods registry study bench testing",
         "numpy": (
             "quantities compile theory shape orbit numerics dynamics methods study onsets results runner "
-            "scene charts notebook bench testing least_model sensitivity fitting laws.arrays"
+            "scene charts notebook bench testing least_model sensitivity fitting response laws.arrays"
         ),
         "hypothesis": "testing",
         "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions

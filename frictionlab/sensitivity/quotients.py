@@ -44,17 +44,20 @@ class Derivative(NamedTuple):
     reason: str = ""
 
 
-def derivative(values: _Values, here: Floats, widest: float, noise: Floats) -> Derivative:
+def derivative(
+    values: _Values, here: Floats, widest: float, noise: Floats, scatters: bool = True
+) -> Derivative:
     """The derivative of ``values`` at offset 0, where its value is ``here`` and each is in error by ``noise``.
 
-    widest: the largest offset. Offsets shrink until errors no longer fall.
+    widest: the largest offset. Offsets shrink until errors no longer fall. scatters: whether values that miss a
+    polynomial may be in error by as much.
     """
     best, width, reason, tries = None, widest, NO_VALUES, 0
     for _ in range(_MOST_TRIES):
         tries += 1
         found = values(np.concatenate((width * _PARTS, -width * _PARTS)))
         ahead, behind = _complete(found[:_LEVELS]), _complete(found[_LEVELS:])
-        one, why = _from_both(ahead, behind, here, width, noise)
+        one, why = _from_both(ahead, behind, here, width, noise, scatters)
         if why == CORNER and best is not None:
             best = None  # offsets before were too wide to see it
         reason = why or reason
@@ -87,7 +90,7 @@ def _complete(values: list[Floats | None]) -> Floats | None:
 
 
 def _from_both(
-    ahead: Floats | None, behind: Floats | None, here: Floats, width: float, noise: Floats
+    ahead: Floats | None, behind: Floats | None, here: Floats, width: float, noise: Floats, scatters: bool
 ) -> tuple[Derivative | None, str]:
     """The derivative, or why there is none over these offsets."""
     steps, rounding = (width * _PARTS)[:, None], _rounding(width, noise)
@@ -102,7 +105,8 @@ def _from_both(
     right, left = _extrapolated(after, 1.0, rounding), _extrapolated(before, 1.0, rounding)
     if (np.abs(right.value - left.value) > 2.0 * (right.error + left.error)).any():
         return None, CORNER
-    rounding = rounding + _rounding(width, _scatter(ahead, behind, here))
+    if scatters:
+        rounding = rounding + _rounding(width, _scatter(ahead, behind, here))
     smooth, bent = (_extrapolated(0.5 * (after + before), power, rounding) for power in (2.0, 1.0))
     better = smooth.error <= bent.error
     value = np.where(better, smooth.value, bent.value)

@@ -52,6 +52,7 @@ class MemoryPoint:
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
         self.curve: Curve | None = None
+        self.from_rest: Floats | None = None
         self.tested = ""
         moves = self.belt_speed != 0.0 or self._swing() > 0.0
         self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
@@ -84,10 +85,10 @@ class MemoryPoint:
         return curve
 
     def _followed(self, state: Floats) -> PrescribedMean:
-        """Where the memory goes from rest, and from steady sliding in either direction."""
+        """Where the memory goes from steady sliding in either direction, and from rest, which is kept."""
         means = []
         swing = self._swing() + abs(self.belt_speed)
-        for side in (0.0, 1.0, -1.0):
+        for side in (1.0, -1.0, 0.0):
             KernelCall(write_start)(self.maps, (0j, 0j, complex(side * swing)), state)
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
@@ -97,6 +98,7 @@ class MemoryPoint:
             (_repeats, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
             self.seconds += seconds
             means.append(each[count - 1])
+            self.from_rest = states[count]
         return self._left_open(means, "the memory does not converge from different starts")
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
@@ -108,9 +110,14 @@ class MemoryPoint:
 
     def orbit(self) -> Orbit | None:
         """One period of the prescribed motion, and the friction along it."""
-        if self.curve is None:
-            return None
-        found = self._called(self.curve.states, RECORDED)
+        return None if self.curve is None else self._recorded(self.curve.states)
+
+    def orbit_from_rest(self) -> Orbit | None:
+        """The same where the mean depends on the start: of a memory that was followed from rest."""
+        return None if self.from_rest is None else self._recorded(self.from_rest[None])
+
+    def _recorded(self, states: Floats) -> Orbit:
+        found = self._called(states, RECORDED)
         track, end = found.orbits, found.ends[0]
         tau, x, v, friction, stick = (
             part[:end] for part in (track.tau, track.x, track.v, track.friction, track.stick)

@@ -29,7 +29,7 @@ from frictionlab.columns import SI, by_plain_names, plain_word, symbol, word
 from frictionlab.printable import printable
 from frictionlab.study import Study
 from frictionlab.study.figure_options import FIGURE_NAMES, FORMATS, USUAL_FIGURES, FigureOptions
-from frictionlab.units.shown import ShownUnit, in_shown_units
+from frictionlab.units.shown import ShownUnit, as_shown
 
 FIGURES = {
     "mean_friction": ["mean_friction"],
@@ -110,10 +110,7 @@ class FigureData:
 
     def shown(self, table: pd.DataFrame) -> pd.DataFrame:
         """A table of the run in the units in which it is shown, laws and methods in words."""
-        said = {
-            name: table[name].replace(words) for name, words in self.words.items() if name in table and words
-        }
-        return in_shown_units(table.assign(**said) if said else table, self.units)
+        return as_shown(table, self.units, self.words)
 
     @cached_property
     def family(self) -> Family | None:

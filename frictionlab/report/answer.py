@@ -9,11 +9,12 @@ import pandas as pd
 from markupsafe import Markup, escape
 
 from frictionlab.charts.sweeps import sweep_of
-from frictionlab.printable import with_error
+from frictionlab.printable import MOST_DIGITS, with_error
+from frictionlab.quantities import Floats
 from frictionlab.report.facts import Facts
 from frictionlab.report.findings import place_of, with_remark
 from frictionlab.report.shapes import shape_sentence
-from frictionlab.report.tables import listed, named, settings, size
+from frictionlab.report.tables import begun, listed, named, settings, the
 from frictionlab.results.pairs import Difference, best_rows
 from frictionlab.results.ranking import NOBODY, Ranking, ranking_of
 from frictionlab.results.table import swept_inputs
@@ -39,7 +40,7 @@ def height_sentence(run: Facts) -> Markup:
         return Markup("No point has {}.").format(one)
     along = sweep_of(table).along or run.speed
     if told := _models(run):
-        return Markup("; ").join(told) + _without(table, best)
+        return begun(Markup("; ").join(told) + _without(table, best))
     ranking = ranking_of(table, along)
     first = _span(best, along, run.speed) if ranking is None else _Ranked(ranking, along).sentence()
     if table["law"].nunique() == 1:
@@ -63,22 +64,32 @@ def _models(run: Facts) -> list[Markup]:
     if len(found) == 1:
         ((law, method), pairs), several = next(iter(found.items())), run.table["law"].nunique() > 1
         if len(pairs) <= MOST_STRETCHES:
-            return [_off(f"{method} of {law}" if several else method, pairs)]
+            return [_off(run, f"{the(method)} of {law}" if several else the(method), pairs)]
     widest = [(who, max(pairs, key=lambda each: abs(each.value))) for who, pairs in found.items()]
     widest.sort(key=lambda each: -abs(each[1].value))
-    return [_off(f"{method} of {law}", [pair]) for (law, method), pair in widest[:MOST_STRETCHES]]
+    return [_off(run, f"{the(method)} of {law}", [pair]) for (law, method), pair in widest[:MOST_STRETCHES]]
 
 
-def _off(who: str, pairs: Sequence[Difference]) -> Markup:
+def _off(run: Facts, who: str, pairs: Sequence[Difference]) -> Markup:
     """How far a model is off, setting by setting."""
     if not any(pair.apart for pair in pairs):
-        return Markup("{} agrees with {} within errors").format(who, pairs[0].other)
-    told = []
+        return Markup("{} agrees with {} within errors").format(who, the(pairs[0].other))
+    if len(pairs) == 1:
+        return Markup("{} is {}, at {}").format(who, _far(pairs[0]), settings(pairs[0].where))
+    told: list[Markup] = []
     for pair in pairs:
-        side = "low" if pair.value < 0 else "high"
-        far = with_error(abs(pair.value), pair.error, IN_SHORT)
-        told.append(Markup("up to {} too {}, at {}").format(far, side, settings(pair.where)))
-    return Markup("{} is {}").format(who, Markup("; ").join(told))
+        speed = {name: value for name, value in pair.where.items() if name == run.speed}
+        others = settings({name: value for name, value in pair.where.items() if name not in speed})
+        by = Markup(" ({})").format(settings(speed)) if speed else ""
+        told.append(Markup("at {} {}{}{}").format(others, "" if told else f"{who} is ", _far(pair), by))
+    return Markup(", ").join(told)
+
+
+def _far(pair: Difference) -> str:
+    if not pair.apart:
+        return "right within errors"
+    side = "low" if pair.value < 0 else "high"
+    return f"up to {with_error(abs(pair.value), pair.error, IN_SHORT)} too {side}"
 
 
 def _alone(run: Facts) -> Markup:
@@ -87,8 +98,9 @@ def _alone(run: Facts) -> Markup:
     if rows.empty:
         return Markup("")
     worst = rows.loc[rows["error"].idxmax()]
-    told = Markup("; {} is off by at most {}, at {}")
-    return told.format(listed(list(rows["method"].unique())), size(worst["error"]), place_of(run, worst))
+    models, told = [the(each) for each in rows["method"].unique()], Markup("; {} {} off by at most {}, at {}")
+    be = "is" if len(models) == 1 else "are"
+    return told.format(listed(models), be, with_error(worst["error"], None, 2), place_of(run, worst))
 
 
 def _methods(run: Facts) -> Markup:
@@ -166,15 +178,16 @@ class _Ranked(NamedTuple):
 
     def spread(self) -> Markup:
         """How far the highest is above the lowest at most, for each setting where these are few."""
-        told = []
-        for at, high, low in self.ranking.widest(self.along, MOST_STRETCHES):
-            mean, error = self.ranking.mean[at], self.ranking.error[at]
-            apart = with_error(float(mean[high] - mean[low]), float(error[high] + error[low]), IN_SHORT)
-            where = settings(self.ranking.points.iloc[at].to_dict())
-            told.append(
-                Markup("{} is up to {} above {}, at {}").format(self.name(high), apart, self.name(low), where)
-            )
-        return Markup("; ").join(told)
+        return Markup("; ").join(
+            self.apart(*ends) for ends in self.ranking.widest(self.along, MOST_STRETCHES)
+        )
+
+    def apart(self, at: int, high: int, low: int) -> Markup:
+        """How far one is above another at a point."""
+        mean, error = self.ranking.mean[at], self.ranking.error[at]
+        far = with_error(float(mean[high] - mean[low]), float(error[high] + error[low]), IN_SHORT)
+        where = settings(self.ranking.points.iloc[at].to_dict())
+        return Markup("{} is up to {} above {}, at {}").format(self.name(high), far, self.name(low), where)
 
     def where(self, start: int, stop: int) -> Markup:
         """A stretch of the axis."""
@@ -188,16 +201,13 @@ class _Ranked(NamedTuple):
         return whole.format(first, last)
 
     def excess(self) -> Markup:
-        """How far the highest is above the next, at most, and where."""
-        ranking, at = self.ranking, self.ranking.largest_excess
-        who, other = int(ranking.first[at]), int(ranking.second[at])
-        excess = with_error(float(ranking.excess[at]), float(ranking.excess_error[at]), IN_SHORT)
-        if len(ranking.first) == 1:
-            value = with_error(float(ranking.mean[at, who]), float(ranking.error[at, who]))
-            return Markup("{}, which is {} above {}, the next").format(value, excess, self.name(other))
-        where = settings(ranking.points.iloc[at].to_dict())
-        told = Markup("the largest distance to the next is {}, of {} above {} at {}")
-        return told.format(excess, self.name(who), self.name(other), where)
+        """How far the highest is above the lowest, at most, and where; of one point above the next."""
+        if len(self.ranking.first) > 1:
+            return self.apart(*self.ranking.widest(self.along, 0)[0])
+        ranking, who, other = self.ranking, int(self.ranking.first[0]), int(self.ranking.second[0])
+        excess = with_error(float(ranking.excess[0]), float(ranking.excess_error[0]), IN_SHORT)
+        value = with_error(float(ranking.mean[0, who]), float(ranking.error[0, who]))
+        return Markup("{}, which is {} above {}, the next").format(value, excess, self.name(other))
 
 
 def _span(best: pd.DataFrame, along: str, speed: str) -> Markup:
@@ -217,16 +227,31 @@ def _span(best: pd.DataFrame, along: str, speed: str) -> Markup:
     for verb, sign in (("rises", 1.0), ("falls", -1.0)):
         if list(names) == [along] and (sign * steps >= -slack).all():
             told = Markup("Mean friction of {} {} from {} at {} to {} at {}")
-            return told.format(law, verb, *_means_at(rows, names, [0, -1]))
+            ends = told.format(law, verb, *_means_at(rows, names, [0, -1], IN_SHORT))
+            return ends + _zero(mean, error, rows[along])
     told = Markup("Mean friction of {} is smallest, {}, at {} and largest, {}, at {}")
-    return told.format(law, *_means_at(rows, names, [least, most]))
+    return told.format(law, *_means_at(rows, names, [least, most], IN_SHORT))
 
 
-def _means_at(rows: pd.DataFrame, names: Iterable[str], places: list[int]) -> list[str | Markup]:
+def _zero(mean: Floats, error: Floats, places: pd.Series) -> Markup:
+    """Where a curve that rises or falls throughout passes zero, if it does: at a point or between neighbours."""
+    past = [at for at, value in enumerate(mean) if value * mean[0] <= abs(mean[0]) * error[at]]
+    if not past or past[0] == 0:
+        return Markup("")
+    after = past[0]
+    before, at = (settings({places.name: places.iloc[place]}) for place in (after - 1, after))
+    if abs(mean[after]) <= error[after]:
+        return Markup(", through zero at {}").format(at)
+    return Markup(", through zero between {} and {}").format(before, at)
+
+
+def _means_at(
+    rows: pd.DataFrame, names: Iterable[str], places: list[int], digits: int = MOST_DIGITS
+) -> list[str | Markup]:
     """Of some rows the mean with its error, and the values of these inputs."""
     told: list[str | Markup] = []
     for _, row in rows.iloc[places].iterrows():
-        told.append(with_error(float(row["mean_friction"]), float(row["error"])))
+        told.append(with_error(float(row["mean_friction"]), float(row["error"]), digits))
         told.append(settings({name: row[name] for name in names}))
     return told
 

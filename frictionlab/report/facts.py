@@ -12,15 +12,12 @@ from markupsafe import Markup
 
 from frictionlab.charts.figures import FigureData
 from frictionlab.columns import BELT_SPEED, belt_speed
-from frictionlab.printable import with_error
 from frictionlab.report.sources import Cited, sources
 from frictionlab.report.tables import Cell, settings
 from frictionlab.results.pairs import Difference, method_pairs
 from frictionlab.results.table import swept_inputs
 from frictionlab.runner.saved import Saved
-from frictionlab.units.shown import in_shown_units
-
-NOT_DETERMINED = "not determined"
+from frictionlab.units.shown import as_shown
 
 
 class CurveRows(NamedTuple):
@@ -51,8 +48,11 @@ class Facts:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """The result table, in the units in which it is shown."""
-        return in_shown_units(self.saved.table, self.saved.study.units)
+        """The result table, in the units in which it is shown, laws and methods in words."""
+        return self._shown(self.saved.table)
+
+    def _shown(self, table: pd.DataFrame) -> pd.DataFrame:
+        return as_shown(table, self.saved.study.units, self.saved.study.in_words)
 
     @property
     def speed(self) -> str:
@@ -71,8 +71,9 @@ class Facts:
 
     @cached_property
     def reduced(self) -> frozenset[str]:
-        """The labels of its methods that solve a simpler model."""
-        return frozenset(each.label for each in self.saved.study.methods if each.is_reduced)
+        """Its methods that solve a simpler model, in words."""
+        study = self.saved.study
+        return frozenset(study.in_words["method"][each.label] for each in study.methods if each.is_reduced)
 
     @cached_property
     def method_pairs(self) -> list[Difference]:
@@ -91,7 +92,7 @@ class Facts:
 
     def curves_of(self, table: pd.DataFrame) -> list[CurveRows]:
         """Those of a table of this run, told apart by what is swept."""
-        table = in_shown_units(table, self.saved.study.units)
+        table = self._shown(table)
         told = [name for name in self.swept if name in table]
         groups = table.groupby(["law", "method", *told], sort=False, dropna=False)
         return [
@@ -108,11 +109,10 @@ class Facts:
             found[curve.key] = float(ratios[ratios.abs() < float("inf")].median())
         return {key: scale for key, scale in found.items() if scale == scale}
 
-    def speed_in_given_units(self, curve: CurveRows, row: pd.Series, name: str) -> str:
-        """A belt speed of a row of a curve with its error, unless that is larger."""
+    def speed_in_given_units(self, curve: CurveRows, row: pd.Series, name: str) -> tuple[float, float]:
+        """A belt speed of a row of a curve, and its error."""
         scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
-        value, error = scale * float(row[name]), scale * float(row[f"{name}_error"])
-        return NOT_DETERMINED if error > abs(value) else with_error(value, error)
+        return scale * float(row[name]), scale * float(row[f"{name}_error"])
 
 
 def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:

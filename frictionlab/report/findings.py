@@ -65,7 +65,12 @@ def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:
     """The onsets of onsets.csv, each with its error, curve by curve."""
     curves = run.curves_of(onsets)
     rows = (
-        [*who, row["onset"].replace("_", " "), run.speed_in_given_units(curve, row, "belt_speed"), row["how"]]
+        [
+            *who,
+            row["onset"].replace("_", " "),
+            with_error(*run.speed_in_given_units(curve, row, "belt_speed")),
+            row["how"],
+        ]
         for who, curve in zip(whose(curves), curves, strict=True)
         for _, row in curve.rows.iterrows()
     )

@@ -194,19 +194,24 @@ def laws_grid(study: Study) -> Grid:
     """The laws, what each is, and their parameters."""
     swept = {law.label: dict.fromkeys(study.swept_parameters(law), "swept") for law in study.laws}
     rows = [
-        _choice(law.label, law.kind, law_text(law), law.parameters | swept[law.label]) for law in study.laws
+        _choice(study.in_words["law"][law.label], law.kind, law_text(law), law.parameters | swept[law.label])
+        for law in study.laws
     ]
-    return grid("The friction laws", ["label", "law", "what it is", "parameters"], rows)
+    return grid("The friction laws", ["law", "kind", "what it is", "parameters"], rows)
 
 
 def methods_grid(study: Study) -> Grid:
     """The methods, what each is, and their parameters."""
-    rows = [_choice(each.label, each.name, method_text(each.name), each.parameters) for each in study.methods]
-    return grid("The methods", ["label", "method", "what it is", "parameters"], rows)
+    said = study.in_words["method"]
+    rows = [
+        _choice(said[each.label], each.name, method_text(each.name), each.parameters)
+        for each in study.methods
+    ]
+    return grid("The methods", ["method", "kind", "what it is", "parameters"], rows)
 
 
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
-    """Its name where that says more than the label, the first line of its text, its parameters with their values."""
+    """Its words, its kind where that is another name, the first line of its text, its parameters with values."""
     told = [
         Markup("{} = {}").format(
             symbol_html(f"law.{name}"),

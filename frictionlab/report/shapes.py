@@ -9,14 +9,16 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.printable import with_error
-from frictionlab.report.facts import NOT_DETERMINED, CurveRows, Facts, whose
+from frictionlab.report.facts import CurveRows, Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Cell, Grid, grid, listed, named, setting, size
+from frictionlab.report.tables import Cell, Grid, grid, listed, named, setting, size, the
 from frictionlab.results.summary import alike, pattern
 from frictionlab.results.words import counted
 
 MOST_CURVES_NAMED = 6
 """Curves that are named one by one; more are told by what parts their shapes best, else counted."""
+MOST_OF_A_SHAPE = 3
+"""Curves of one shape that are named among more of another."""
 MOST_GROUPS = 4
 MEANING = {
     "concave": ("above its chord", "above their chords"),
@@ -48,9 +50,23 @@ def shape_sentence(run: Facts) -> Markup:
     found, without = _verdicts(run, curves), int(curves["shape"].isna().sum())
     if not found:
         return Markup("No shape is read: {}.").format(_why_not(curves))
-    told = _one(run, found[0]) if len(found) == 1 else _several(found, every=not without)
+    told = _one(found[0]) if len(found) == 1 else _several(found, every=not without)
     rest = f"; of {counted(without, 'curve')} none is read ({_why_not(curves)})" if without else ""
-    return Markup("{}{}{}.").format(told, _otherwise(run, curves, found), rest)
+    return Markup("{}{}{}. {}").format(told, _otherwise(run, curves, found), rest, _end(run, found))
+
+
+def _end(run: Facts, found: Sequence[CurveRows]) -> Markup:
+    """Where slip stops reversing: one belt speed for all, or between which; those known to more than themselves."""
+    ends = [run.speed_in_given_units(curve, curve.rows.iloc[0], "reversal_end") for curve in found]
+    known = [(value, error) for value, error in ends if error <= abs(value)]
+    if not known:
+        return Markup("Where slip stops reversing is left open by errors.")
+    (low, low_error), (high, high_error) = min(known), max(known)
+    alike = high - low <= low_error + high_error
+    best = with_error(*min(known, key=lambda each: each[1]))
+    where = f"= {best}" if alike else f"from {low:.4g} to {high:.4g}"
+    told = Markup('Slip stops reversing at <span class="short">{} {}{}</span>.')
+    return told.format(symbol_html(run.speed), where, unit_html(run.speed))
 
 
 def _why_not(curves: pd.DataFrame) -> str:
@@ -82,9 +98,17 @@ def _otherwise(run: Facts, curves: pd.DataFrame, found: Sequence[CurveRows]) -> 
         of_it = [each for each in own if each.method == method]
         others = [each for each in of_it if {_shape(each), full[f"{each.law}, {each.name}"]} in CONTRADICTORY]
         if others:
-            which = "that" if len(of_it) == 1 else f"{len(others)} of {len(of_it)}"
             shapes = listed([*dict.fromkeys(_shape(each) for each in others)])
-            told += Markup("; by {} {} {} {} instead").format(method, which, _be(others), shapes)
+            which = (
+                f"{len(others)} of {len(of_it)} curves"
+                if len(others) > MOST_OF_A_SHAPE
+                else "it"
+                if len(of_it) == 1
+                else Markup("{} for {}").format(
+                    "that" if len(others) == 1 else "those", _names(others, of_it)
+                )
+            )
+            told += Markup("; by {} {} {} {}").format(the(method), which, _be(others), shapes)
     return told
 
 
@@ -92,19 +116,12 @@ def _shape(curve: CurveRows) -> str:
     return str(curve.rows["shape"].iloc[0])
 
 
-def _one(run: Facts, curve: CurveRows) -> Markup:
+def _one(curve: CurveRows) -> Markup:
     row, shape = curve.rows.iloc[0], _shape(curve)
-    area = with_error(row["shape_area"], row["shape_area_error"])
-    end = run.speed_in_given_units(curve, row, "reversal_end")
-    at = Markup(' at <span class="short">{} = {}{}</span>')
-    where = at.format(symbol_html(run.speed), end, unit_html(run.speed))
-    told = Markup(
-        'The curve of {} is <a href="#shape">{}</a> '
-        "({}, the straight line from rest to the end of reversal{}; area {})"
-    )
-    return told.format(
-        curve.law, shape, MEANING[shape][0], f", {end}" if end == NOT_DETERMINED else where, area
-    )
+    area = with_error(abs(row["shape_area"]), row["shape_area_error"])
+    share = f", by {area} of the area under it" if shape in ("concave", "convex") else ""
+    told = Markup('The curve of {} is <a href="#shape">{}</a> ({}{})')
+    return told.format(curve.law, shape, MEANING[shape][0], share)
 
 
 def _several(found: Sequence[CurveRows], every: bool) -> Markup:
@@ -119,15 +136,22 @@ def _several(found: Sequence[CurveRows], every: bool) -> Markup:
         return Markup("; ").join(named_ones)
     groups = _groups(found)
     if not groups:
+        most = max(map(len, parts.values()))
         counts = [
-            Markup("{}{} {}").format(len(own), "" if at else f" {_be(own)}", _linked(shape, len(own)))
+            Markup("{}{} {}").format(
+                len(own), "" if at else f" {_be(own)}", _linked(shape, len(own), _few(own, found, most))
+            )
             for at, (shape, own) in enumerate(parts.items())
         ]
         return Markup("Of {} curves {}").format(len(found), listed(counts))
     told = []
     for where, curves in groups.items():
+        most = max(Counter(map(_shape, curves)).values())
         kinds = [
-            Markup("{} {}").format("all" if len(own) == len(curves) else len(own), _linked(shape, len(own)))
+            Markup("{} {}").format(
+                "all" if len(own) == len(curves) else len(own),
+                _linked(shape, len(own), _few(own, curves, most)),
+            )
             for shape in MEANING
             if (own := [curve for curve in curves if _shape(curve) == shape])
         ]
@@ -151,20 +175,34 @@ def _groups(found: Sequence[CurveRows]) -> dict[Cell, list[CurveRows]]:
 
 def _named(own: Sequence[CurveRows], shape: str, found: Sequence[CurveRows], first: bool) -> Markup:
     """Curve labels, grouped by shape."""
-    one_law = len({each.law for each in found}) == 1
-    names = listed([named({"law": each.law} | dict(each.where), one_law) for each in own])
+    one_law, names = len({each.law for each in found}) == 1, _names(own, found)
     subject = ("The curves", "The curve") if first else ("those", "that")
     law = Markup(" of {}").format(found[0].law) if one_law and first else ""
     of = Markup(" for {}" if one_law else " of {}").format(names)
     return Markup("{}{}{} {} {}").format(subject[len(own) == 1], law, of, _be(own), _linked(shape, len(own)))
 
 
+def _names(own: Sequence[CurveRows], among: Sequence[CurveRows]) -> Markup:
+    """Curves by what tells them from others: the law, and what does not have one value in all."""
+    one_law = len({each.law for each in among}) == 1
+    varied = [name for name in own[0].where if len({each.where[name] for each in among}) > 1]
+    return listed(
+        [named({"law": each.law} | {name: each.where[name] for name in varied}, one_law) for each in own]
+    )
+
+
+def _few(own: Sequence[CurveRows], among: Sequence[CurveRows], most: int) -> Markup:
+    """The names of a few curves that are no others' shape."""
+    return _names(own, among) if len(own) < most and len(own) <= MOST_OF_A_SHAPE else Markup("")
+
+
 def _be(own: Sequence[CurveRows]) -> str:
     return "is" if len(own) == 1 else "are"
 
 
-def _linked(shape: str, count: int) -> Markup:
-    return Markup('<a href="#shape">{}</a> ({})').format(shape, MEANING[shape][count > 1])
+def _linked(shape: str, count: int, names: Markup | str = "") -> Markup:
+    told = Markup(": {}").format(names) if names else ""
+    return Markup('<a href="#shape">{}</a> ({}{})').format(shape, MEANING[shape][count > 1], told)
 
 
 def shape_grid(run: Facts) -> Grid | None:
@@ -201,7 +239,7 @@ def _measure(run: Facts, curve: CurveRows, name: str) -> Cell:
     if pd.isna(row[name]):
         return ""
     if name == "reversal_end":
-        return run.speed_in_given_units(curve, row, name)
+        return with_error(*run.speed_in_given_units(curve, row, name))
     return (
         size(row[name])
         if name == "model_distance"

@@ -75,6 +75,17 @@ def size(value: float) -> str:
     return "" if pd.isna(value) else f"{value:.1e}"
 
 
+def the(method: str) -> str:
+    """A method in a sentence: words have an article, a label has none."""
+    return f"the {method}" if " " in method else method
+
+
+def begun(sentence: Markup) -> Markup:
+    """A sentence that begins with words of ours, with a capital."""
+    ours = sentence.startswith(("the ", "at "))
+    return Markup(sentence[:1].upper() + sentence[1:]) if ours else sentence
+
+
 def joined_values(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
     return Markup(", ").join(map(escape, dict.fromkeys(words)))

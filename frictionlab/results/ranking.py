@@ -49,11 +49,6 @@ class Ranking:
         cuts = [0, *(np.flatnonzero(np.diff(self.first)) + 1).tolist(), len(self.first)]
         return [(int(self.first[start]), start, stop - 1) for start, stop in pairwise(cuts)]
 
-    @property
-    def largest_excess(self) -> int:
-        """The point at which the highest is furthest above the second."""
-        return int(np.argmax(np.where(self.first == NOBODY, -1.0, self.excess)))
-
     def widest(self, along: str, most: int) -> list[tuple[int, int, int]]:
         """Where the highest is furthest above the lowest: the point, and the places of both.
 

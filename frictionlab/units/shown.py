@@ -58,6 +58,14 @@ def in_shown_units(table: pd.DataFrame, written: Mapping[str, ShownUnit]) -> pd.
     return shown
 
 
+def as_shown(
+    table: pd.DataFrame, units: Mapping[str, ShownUnit], words: Mapping[str, Mapping[str, str]]
+) -> pd.DataFrame:
+    """A table of a run in the units in which it is shown, laws and methods in words, as pages and figures have it."""
+    said = {name: table[name].replace(told) for name, told in words.items() if name in table and told}
+    return in_shown_units(table.assign(**said) if said else table, units)
+
+
 def handy_unit(unit: str, largest: float) -> ShownUnit:
     """The unit with a prefix, of which the largest number is 1 to 1000; as it is where there is none."""
     if not 0.0 < largest < math.inf:

@@ -19,6 +19,7 @@ from frictionlab.study import Study
 
 SPEED, FREQUENCY = "scene.belt_speed", "scene.drive.frequency"
 NONE = math.nan
+IN_WORDS = {"law": {"coulomb": "Coulomb"}, "method": {"exact": "exact", "mdsm": "closed form"}}
 HIGHEST = "Mean friction is highest for "
 
 
@@ -42,7 +43,7 @@ def told(
     table = pd.concat(rows, ignore_index=True)
     account = {"expect": [{"passed": passed, "sentence": "x"} for passed in verdicts]}
     methods = [SimpleNamespace(label=name, is_reduced=name == "mdsm") for name in ("exact", "mdsm")]
-    study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}, methods=methods))
+    study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}, methods=methods, in_words=IN_WORDS))
     saved = Saved(Path(), study, table, pd.DataFrame(curves) if curves else None, account)
     assert saved.verdicts == [Verdict(passed, "x") for passed in verdicts]
     return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved))]
@@ -60,36 +61,35 @@ ROUGH = [curve("coulomb", [0.1, 0.32]), curve("coulomb", [0.1, 0.3], error=0.05)
 WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
     "one point is told with its number and its error": (
         [curve("coulomb", [0.25], error=0.002)],
-        "The mean friction coefficient of coulomb is 0.250 ± 0.002 at vb = 1.",
+        "The mean friction coefficient of Coulomb is 0.250 ± 0.002 at vb = 1.",
     ),
     "a curve that rises is told by its ends": (
         [curve("coulomb", [0.1, 0.2, 0.2, 0.4])],
-        "Mean friction of coulomb rises from 0.1 at vb = 1 to 0.4 at vb = 4.",
+        "Mean friction of Coulomb rises from 0.1 at vb = 1 to 0.4 at vb = 4.",
     ),
     "two points make a curve that falls": (
         [curve("coulomb", [0.4, 0.1])],
-        "Mean friction of coulomb falls from 0.4 at vb = 1 to 0.1 at vb = 2.",
+        "Mean friction of Coulomb falls from 0.4 at vb = 1 to 0.1 at vb = 2.",
     ),
     "a curve that turns is told by its least and greatest": (
         [curve("coulomb", [0.3, 0.1, 0.4, 0.2])],
-        "Mean friction of coulomb is smallest, 0.1, at vb = 2 and largest, 0.4, at vb = 3.",
+        "Mean friction of Coulomb is smallest, 0.1, at vb = 2 and largest, 0.4, at vb = 3.",
     ),
     "a curve that is flat within its errors is said to be": (
         [curve("coulomb", [0.4, 0.401, 0.4], error=0.01)],
-        "Mean friction of coulomb is the same within its errors at all 3 points: 0.40 ± 0.01.",
+        "Mean friction of Coulomb is the same within its errors at all 3 points: 0.40 ± 0.01.",
     ),
     "a law without a number anywhere is named": (
         [curve("coulomb", [0.1, 0.2]), curve("dahl", [NONE] * 2)],
-        "Mean friction of coulomb rises from 0.1 at vb = 1 to 0.2 at vb = 2; dahl has no number.",
+        "Mean friction of Coulomb rises from 0.1 at vb = 1 to 0.2 at vb = 2; dahl has no number.",
     ),
     "the law that is highest everywhere is named once": (
         [curve("coulomb", [0.1, 0.2], error=2e-3), curve("dahl", [0.15, 0.3], error=2e-3)],
-        f"{HIGHEST}dahl at all 2 belt speeds; the largest distance to the next is 0.100 ± 0.004, "
-        "of dahl above coulomb at vb = 2.",
+        f"{HIGHEST}dahl at all 2 belt speeds; dahl is up to 0.100 ± 0.004 above Coulomb, at vb = 2.",
     ),
     "laws that are highest in turn have their stretches": (
         [curve("coulomb", [0.1, 0.2, 0.3, 0.4, 0.4]), curve("dahl", [0.2, 0.3, 0.2, 0.3, 0.4])],
-        f"{HIGHEST}dahl up to vb = 2 and coulomb from vb = 3 to vb = 4; "
+        f"{HIGHEST}dahl up to vb = 2 and Coulomb from vb = 3 to vb = 4; "
         "at vb = 5 the highest are the same within errors; ...",
     ),
     "of laws that change places often the largest distance is told": (
@@ -97,11 +97,11 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
             curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
             curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
         ],
-        "No law is highest everywhere: dahl is up to 0.1 above coulomb, at vb = 1.",
+        "No law is highest everywhere: dahl is up to 0.1 above Coulomb, at vb = 1.",
     ),
     "laws that do not differ by more than their errors are the same": (
         [curve("coulomb", [0.1, 0.2], error=0.02), curve("dahl", [0.11, 0.19], error=0.02)],
-        "Mean friction is the same within errors for coulomb and dahl at all 2 belt speeds.",
+        "Mean friction is the same within errors for Coulomb and dahl at all 2 belt speeds.",
     ),
     "of several laws at one point the highest has its number": (
         [curve("coulomb", [0.1]), curve("dahl", [0.3]), curve("lugre", [0.2])],
@@ -109,11 +109,11 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
     ),
     "a law without a number somewhere is not ranked there and that is said": (
         [curve("coulomb", [0.1, 0.2, 0.3]), curve("dahl", [0.2, 0.3, NONE]), curve("b", [0.0] * 3)],
-        f"{HIGHEST}dahl up to vb = 2 and coulomb at vb = 3 (of those with a number); ...",
+        f"{HIGHEST}dahl up to vb = 2 and Coulomb at vb = 3 (of those with a number); ...",
     ),
     "of one law the curves are ranked": (
         [curve("coulomb", [0.1, 0.2], **{FREQUENCY: 1.0}), curve("coulomb", [0.2, 0.4], **{FREQUENCY: 1.5})],
-        "Mean friction of coulomb is highest for Ω = 1.5 at all 2 belt speeds; ...",
+        "Mean friction of Coulomb is highest for Ω = 1.5 at all 2 belt speeds; ...",
     ),
     "points of several sweeps are told with all of them": (
         [
@@ -121,8 +121,7 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
             for law, high in (("coulomb", 0.1), ("dahl", 0.2))
             for frequency in (1.0, 1.5)
         ],
-        f"{HIGHEST}dahl at all 4 points; the largest distance to the next is 0.15, of dahl above "
-        "coulomb at vb = 1, Ω = 1.5.",
+        f"{HIGHEST}dahl at all 4 points; dahl is up to 0.15 above Coulomb, at vb = 1, Ω = 1.5.",
     ),
     "friction swept for all laws together is compared value by value": (
         [curve("coulomb", [mu, mu], **{"law.mu": mu, "law.mu_kinetic": NONE}) for mu in (0.1, 0.2)]
@@ -135,12 +134,16 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
             for frequency, own in ((1.0, ([0.1, 0.3], [0.2, 0.1])), (1.5, ([0.1, 0.2], [0.3, 0.1])))
             for law, means in zip(("coulomb", "dahl"), own, strict=True)
         ],
-        "No law is highest everywhere: coulomb is up to 0.2 above dahl, at vb = 2, Ω = 1; "
-        "dahl is up to 0.2 above coulomb, at vb = 1, Ω = 1.5.",
+        "No law is highest everywhere: Coulomb is up to 0.2 above dahl, at vb = 2, Ω = 1; "
+        "dahl is up to 0.2 above Coulomb, at vb = 1, Ω = 1.5.",
+    ),
+    "a mean that changes its sign does so between neighbours": (
+        [curve("coulomb", [-0.1, -0.05, 0.2])],
+        "...rises from -0.1 at vb = 1 to 0.2 at vb = 3, through zero between vb = 2 and vb = 3.",
     ),
     "a reduced model is judged by the full answers beside it": (
         ROUGH,
-        "mdsm is up to 0.02 too low, at vb = 2.",
+        "The closed form is up to 0.02 too low, at vb = 2.",
     ),
     "a reduced model is judged at each setting": (
         [
@@ -148,11 +151,11 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
             for frequency in (1.0, 1.5)
             for method, off, error in (("mdsm", frequency - 1.2, 0.5), ("exact", 0.0, 1e-9))
         ],
-        "mdsm is up to 0.2 too low, at vb = 2, Ω = 1; up to 0.3 too high, at vb = 2, Ω = 1.5.",
+        "At Ω = 1 the closed form is up to 0.2 too low (vb = 2), at Ω = 1.5 up to 0.3 too high (vb = 2).",
     ),
     "a reduced model alone is told with its own error": (
         ROUGH[1:],
-        "...rises from 0.10 ± 0.05 at vb = 1 to 0.30 ± 0.05 at vb = 2; mdsm is off by at most 5.0e-02, at vb = 1.",
+        "...at vb = 1 to 0.30 ± 0.05 at vb = 2; the closed form is off by at most 0.05, at vb = 1.",
     ),
 }
 
@@ -190,41 +193,45 @@ def test_a_run_whose_every_point_is_not_unique_has_no_one_mean() -> None:
 # Shapes
 
 FREQUENCIES = [float(place) for place in range(1, 6)]
+STOPS = "Slip stops reversing at vb = 50.00 ± 0.02."
 SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
     "one curve is told with its end and its area": (
         [shape("coulomb", "concave")],
-        "The curve of coulomb is concave (above its chord, the straight line from rest to the end of reversal at "
-        "vb = 50.00 ± 0.02; area 0.0577 ± 0.0002).",
+        f"The curve of Coulomb is concave (above its chord, by 0.0577 ± 0.0002 of the area under it). {STOPS}",
     ),
     "an end known to more than itself is not told": (
         [shape("coulomb", "concave", reversal_end=12.0, reversal_end_error=27.0)],
-        "The curve of coulomb is concave (above its chord, the straight line from rest to the end of reversal, "
-        "not determined; area 0.0577 ± 0.0002).",
+        "The curve of Coulomb is concave (above its chord, by 0.0577 ± 0.0002 of the area under it). "
+        "Where slip stops reversing is left open by errors.",
     ),
     "curves that are alike are told together": (
         [shape(law, "convex") for law in ("coulomb", "dahl", "lugre")],
-        "All 3 curves are convex (below their chords).",
+        f"All 3 curves are convex (below their chords). {STOPS}",
     ),
     "curves that are not all are counted": (
         [shape("coulomb", "concave"), shape("dahl", "concave"), shape("lugre", None, "no points")],
-        "2 curves are concave (above their chords); of 1 curve none is read (no points).",
+        f"2 curves are concave (above their chords); of 1 curve none is read (no points). {STOPS}",
     ),
     "a few curves that differ are named": (
-        [shape("coulomb", "concave"), shape("dahl", "convex"), shape("lugre", None, "no points")],
-        "The curve of coulomb is concave (above its chord); that of dahl is convex (below its chord); "
-        "of 1 curve none is read (no points).",
+        [
+            shape("coulomb", "concave", reversal_end=40.0),
+            shape("dahl", "convex"),
+            shape("lugre", None, "no points"),
+        ],
+        "The curve of Coulomb is concave (above its chord); that of dahl is convex (below its chord); "
+        "of 1 curve none is read (no points). Slip stops reversing at vb from 40 to 50.",
     ),
     "many curves are told by what parts their shapes": (
         [shape("coulomb", "concave", **{FREQUENCY: each}) for each in FREQUENCIES]
         + [shape("dahl", "convex", **{FREQUENCY: each}) for each in FREQUENCIES],
-        "Curves for coulomb: all concave (above their chords); for dahl: all convex (below their chords).",
+        f"Curves for Coulomb: all concave (above their chords); for dahl: all convex (below their chords). {STOPS}",
     ),
     "many curves whose shapes nothing parts are counted": (
         [
             shape("coulomb", "convex" if each == 3 else "concave", **{FREQUENCY: each})
             for each in map(float, range(1, 9))
         ],
-        "Of 8 curves 7 are concave (above their chords) and 1 convex (below its chord).",
+        f"Of 8 curves 7 are concave (above their chords) and 1 convex (below its chord: Ω = 3). {STOPS}",
     ),
     "why no shape is read is told by the commonest reason": (
         [shape("coulomb", None, "3 points"), shape("dahl", None, "4 points"), shape("lugre", None, "sticks")],
@@ -245,15 +252,15 @@ def test_the_second_sentence_says_which_curves_are_concave(which: str) -> None:
 def test_a_verdict_that_another_method_cannot_decide_stands() -> None:
     found = [shape("coulomb", "undecided", method="mdsm"), shape("coulomb", "concave")]
 
-    assert told(curve("coulomb", [0.1, 0.2]), curves=found)[1].startswith("The curve of coulomb is concave (")
+    assert told(curve("coulomb", [0.1, 0.2]), curves=found)[1].startswith("The curve of Coulomb is concave (")
 
 
 def test_a_reduced_model_has_its_own_shape_beside_the_true_one() -> None:
     found = [shape("coulomb", "convex", method="mdsm"), shape("coulomb", "concave")]
 
     second = told(*ROUGH, curves=found)[1]
-    assert second.startswith("The curve of coulomb is concave (")
-    assert second.endswith("; by mdsm that is convex instead.")
+    assert second.startswith("The curve of Coulomb is concave (")
+    assert second.endswith(f"; by the closed form it is convex. {STOPS}")
 
 
 def test_a_scene_in_si_units_has_its_end_of_reversal_in_them() -> None:
@@ -261,7 +268,7 @@ def test_a_scene_in_si_units_has_its_end_of_reversal_in_them() -> None:
     first, second, _ = told(rows, curves=[shape("coulomb", "concave")])
 
     assert first.endswith("rises from 0.1 at Vb = 0.25 m/s to 0.2 at Vb = 0.5 m/s.")
-    assert "at Vb = 12.500 ± 0.005 m/s;" in second
+    assert "at Vb = 12.500 ± 0.005 m/s." in second
 
 
 # What needs attention

@@ -199,8 +199,8 @@ def test_there_is_a_line_for_every_curve_and_what_tells_it_apart(ran: Runner) ->
     mean = "mean friction μ̄, least … greatest"
     assert head[:6] == ["law", "curve", "points", mean, "largest error", "at"]
     assert [row[:4] for row in rows] == [
-        ["coulomb", "Ω = 1", "2 ok, 1 refused", "0.101546 … 0.128537"],
-        ["coulomb", "Ω = 1.5", "2 ok, 1 refused", "0.101546 … 0.128537"],
+        ["Coulomb", "Ω = 1", "2 ok, 1 refused", "0.101546 … 0.128537"],
+        ["Coulomb", "Ω = 1.5", "2 ok, 1 refused", "0.101546 … 0.128537"],
     ]
 
 
@@ -218,7 +218,7 @@ def test_the_measures_of_curves_are_shown_with_their_errors_where_there_are_any(
 
     assert with_them.table("Shape") == [
         ["law", "shape", "area between curve and chord", "end of reversal"],
-        ["coulomb", "concave", "0.0577 ± 0.0002", "50"],
+        ["Coulomb", "concave", "0.0577 ± 0.0002", "50"],
     ]
     assert not any("Shape" in caption.text for caption in without.all("caption"))
 
@@ -335,8 +335,8 @@ def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Ru
     saved.table["model"] = ["closed form (V_lin = 50)", "closed form (V_lin = 26.25)", "legs"]
 
     assert page_of(saved).table("What produced the numbers")[1:] == [
-        ["fake", "closed form (V_lin = 26.25 ... 50)", "2 points", "coulomb"],
-        ["fake", "legs", "1 point", "coulomb"],
+        ["fake", "closed form (V_lin = 26.25 ... 50)", "2 points", "Coulomb"],
+        ["fake", "legs", "1 point", "Coulomb"],
     ]
 
 
@@ -344,7 +344,7 @@ def test_a_table_of_few_points_is_shown_whole(ran: Runner) -> None:
     few = page_of(ran(**at_speeds(1.0, 2.0))).table("Every number found")
     many = page_of(ran("many"))
 
-    assert few[0] == ["quantity", "coulomb by fake, vb = 1", "coulomb by fake, vb = 2"]
+    assert few[0] == ["quantity", "Coulomb by fake, vb = 1", "Coulomb by fake, vb = 2"]
     assert few[1][0] == "mean friction μ̄"
     assert not any(caption.text == "Every number found" for caption in many.all("caption"))
 

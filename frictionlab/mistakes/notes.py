@@ -286,19 +286,29 @@ class Notes:
         self.add(path, what, hint, on_key=True)
 
     def unknown_key(
-        self, path: Path, allowed: Iterable[str], given: Iterable[str] = (), required: Iterable[str] = ()
+        self,
+        path: Path,
+        allowed: Iterable[str],
+        given: Iterable[str] = (),
+        required: Iterable[str] = (),
+        in_units: Iterable[str] = (),
     ) -> None:
-        """An unknown key beside those given; one of the others is more likely to be meant."""
+        """An unknown key beside those given; one of the others is more likely to be meant.
+
+        in_units: keys that are allowed too, of the same numbers without a unit behind them.
+        """
         if path not in self._misspelt:
             self._misspelt.add(path)
             self._mark(path)
-            names = list(allowed)
+            told, longer = list(allowed), list(in_units)
+            names = [*told, *longer]
             left = [name for name in names if name not in (*given,)]
             missing = [name for name in required if name in left]
             hint = did_you_mean(str(path[-1]), left, missing) or did_you_mean(str(path[-1]), names)
             if not hint and str(path[-1]).isdecimal():  # 0,4 in braces is 0, and a key 4
                 hint = f"numbers are written with a point, such as 0.{path[-1]}"
-            what = f"unknown key; allowed: {', '.join(names) or 'none'}"
+            what = f"unknown key; allowed: {', '.join(told) or 'none'}"
+            what += f"; of a number without a unit its key has one, such as {longer[0]}" if longer else ""
             self.all.append(Note(path, what, hint, on_key=True))
 
     def below(self, path: Path) -> bool:

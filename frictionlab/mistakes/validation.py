@@ -240,8 +240,9 @@ class _Told:
             owner, given = nested(owner, str(step)) or owner, given[str(step)]
         key, fields = str(loc[-1]), owner.model_fields
         required = [name for name, field in fields.items() if field.is_required()]
-        names = [*fields, *getattr(owner, "other_names", {})]
-        self._notes.unknown_key((*self._path, *loc), names, given, required)
+        shorter = {field: key for key, field in getattr(owner, "other_names", {}).items()}
+        names = [shorter.get(name, name) for name in fields]
+        self._notes.unknown_key((*self._path, *loc), names, given, required, shorter)
         left = [name for name in fields if name not in given]
         return (*loc[:-1], closest(key, left, [name for name in required if name in left]) or key)
 

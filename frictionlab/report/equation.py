@@ -110,7 +110,12 @@ _SHARES = frozenset({"normal_load_variation"})
 
 
 def _signed(value: float) -> Markup:
-    return Markup(number(value).replace("-", _MINUS))
+    """A number with a minus, not a hyphen, and its power of ten as one."""
+    digits, _, power = number(value).replace("-", _MINUS).partition("e")
+    if not power:
+        return Markup(digits)
+    times = "" if digits == "1" else f"{digits}·"
+    return Markup("{}10<sup>{}</sup>").format(times, power.lstrip("+0").replace(f"{_MINUS}0", _MINUS))
 
 
 def _motion(n: _Numbers, axis: int) -> Markup:

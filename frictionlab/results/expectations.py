@@ -11,6 +11,7 @@ import pandas as pd
 
 from frictionlab.columns import BELT_SPEED, CURVE_MEASURES, INPUTS, belt_speed, given
 from frictionlab.printable import with_error
+from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted, in_words
 from frictionlab.study import Expectation, WhereValue
 
@@ -131,7 +132,7 @@ def _comparison(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     excess = {"equals": (values - value).abs(), "below": values - value, "above": value - values}[name]
     worst = excess.idxmax()
     passed = excess[worst] <= within if name == "equals" else excess[worst] < within or excess[worst] < 0
-    return Verdict(bool(passed), f"{in_words(values[worst])}{_largest_error(rows, 'row')}")
+    return Verdict(bool(passed), f"{in_words(values[worst])}{_worst(rows, worst, 'row', bool(passed))}")
 
 
 def _status(wanted: str, rows: pd.DataFrame) -> Verdict:
@@ -151,8 +152,8 @@ def _shape(expectation: Expectation, curves: pd.DataFrame) -> Verdict:
     told = f"{row['reason']}" if pd.isna(verdict) else f"{verdict}, {_measured(row, number)}"
     if others.empty:
         return Verdict(True, told if len(curves) == 1 else f"so are {len(curves)} curves; the first: {told}")
-    which = f" in the first of {len(others)} of {len(curves)} curves" if len(curves) > 1 else ""
-    return Verdict(False, f"{told}{which}")
+    which = f" in the first of {len(others)} of {len(curves)} curves, {_whose(curves, row)}"
+    return Verdict(False, f"{told}{which}" if len(curves) > 1 else told)
 
 
 def _measured(row: pd.Series, name: str) -> str:
@@ -169,8 +170,9 @@ def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
         return Verdict(False, "neither method has a row that matches")
     if missing := _missing(pairs, "mean_friction"):
         return missing
-    worst = float((pairs["mean_friction"] - pairs["mean_friction other"]).abs().max())
-    return Verdict(worst < expectation.below, f"{in_words(worst)}{_largest_error(pairs, 'pair')}")
+    apart = (pairs["mean_friction"] - pairs["mean_friction other"]).abs()
+    worst, passed = float(apart.max()), bool(apart.max() < expectation.below)
+    return Verdict(passed, f"{in_words(worst)}{_worst(pairs, apart.idxmax(), 'pair', passed)}")
 
 
 def _beside(expectation: Expectation, rows: pd.DataFrame, table: pd.DataFrame) -> Verdict:
@@ -211,17 +213,26 @@ def _missing(pairs: pd.DataFrame, column: str) -> Verdict | None:
 def _first(rows: pd.DataFrame) -> str:
     """The first of some rows in words: its status and why."""
     row = rows.iloc[0]
+    status = f", {row['status']}" if "status" in row else ""  # curves have none
     reason = f": {row['reason']}" if isinstance(row["reason"], str) and row["reason"] else ""
+    return f"the row {_whose(rows, row)}{status}{reason}"
+
+
+def _whose(rows: pd.DataFrame, row: pd.Series) -> str:
+    """Law, method, belt speed and what else differs between rows, of one of them."""
     speed = belt_speed(rows)
     unit = "" if speed == BELT_SPEED else " m/s"
-    scene = f" at belt speed {in_words(row[speed])}{unit}" if speed in rows else ""
-    status = f", {row['status']}" if "status" in row else ""  # curves have none
-    return f"the row of {row['law']} by {row['method']}{scene}{status}{reason}"
+    told = [f"belt speed {in_words(row[speed])}{unit}"] if speed in rows else []
+    told += [f"{name.removeprefix('scene.')} {in_words(row[name])}" for name in swept_inputs(rows)]
+    return f"of {row['law']} by {row['method']}{' at ' if told else ''}{', '.join(told)}"
 
 
-def _largest_error(rows: pd.DataFrame, what: str) -> str:
-    """How many rows or pairs of rows a number speaks for, where it is more than one."""
-    return f" in the worst of {len(rows)} {what}s" if len(rows) > 1 else ""
+def _worst(rows: pd.DataFrame, at: Any, what: str, passed: bool) -> str:
+    """Of how many rows or pairs of rows a number is the worst; of a claim that fails, whose it is."""
+    if len(rows) == 1:
+        return ""
+    told = f" in the worst of {len(rows)} {what}s"
+    return told if passed else f"{told}, that {_whose(rows, rows.loc[at])}"
 
 
 def _count(rows: pd.DataFrame) -> str:

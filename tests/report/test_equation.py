@@ -88,6 +88,9 @@ def test_springs_and_vibrations_by_their_other_numbers_are_those_of_the_equation
     pushed = {"belt_vibration": {"acceleration_amplitude_m_per_s2": 4, "frequency_rad_per_s": 20}}
     swept = {"dimensional__belt_vibration__frequency": ["1 Hz", "2 Hz"]}
 
+    small = {"belt_vibration": {"displacement_amplitude": "5 um", "frequency_rad_per_s": 20}}
+
+    assert told({"dimensional": body | stiff | small}, **swept)[1] == "v1 = Ẋ1 − 0.1 − 5·10−6 ω sin(ω t)"
     wanted = ["3 Ẍ1 + 6 Ẋ1 + 300 X1 + 25 T1 = 0", "v1 = Ẋ1 − 0.1 − 0.2 sin(20 t)"]
     assert told({"dimensional": body | natural | shaken}) == wanted
     assert told({"dimensional": body | stiff | pushed}) == wanted

@@ -92,7 +92,7 @@ def test_the_sentence_says_what_was_claimed_where_why_and_what_was_found() -> No
 
     assert judge(claim, TABLE, CURVES).sentence == (
         "mean_friction equals 0.25 within 0.001 where scene.belt_speed 0.3 (Fig. 9b): "
-        "0.1 in the worst of 2 rows"
+        "0.1 in the worst of 2 rows, that of coulomb by exact at belt speed 0.3"
     )
 
 
@@ -137,7 +137,12 @@ CURVES = pd.DataFrame(
             False,
             "slip still reverses at the highest belt speed that has a number, 2",
         ),
-        ({}, {"shape": "convex"}, False, "concave, 0.100 +- 0.002 in the first of 2 of 3 curves"),
+        (
+            {},
+            {"shape": "convex"},
+            False,
+            "concave, 0.100 +- 0.002 in the first of 2 of 3 curves, of coulomb by shooting",
+        ),
         ({"law": "dahl"}, {"shape": "convex"}, False, "no row of the table matches"),
     ],
 )
@@ -173,6 +178,7 @@ LAWS = pd.DataFrame(
         "reason": [""] * 6,
     }
 )
+WORST = "-0.05 in the worst of 4 rows, that of dahl by auto at belt speed 2, law.presliding_length 10"
 COULOMB = {"law": "coulomb"}
 STIFF = {"law": "dahl", "law.presliding_length": 1.0}
 SOFT = {"law": "dahl", "law.presliding_length": 10.0}
@@ -182,7 +188,7 @@ SOFT = {"law": "dahl", "law.presliding_length": 10.0}
     ("where", "claim", "passed", "found"),
     [
         ({"law": "dahl"}, {"minus": COULOMB, "above": -0.06}, True, "-0.05 in the worst of 4 rows"),
-        ({"law": "dahl"}, {"minus": COULOMB, "above": 0.0}, False, "-0.05 in the worst of 4 rows"),
+        ({"law": "dahl"}, {"minus": COULOMB, "above": 0.0}, False, WORST),
         (STIFF | {"scene.belt_speed": 1.0}, {"over": COULOMB, "above": 1.19}, True, "1.2"),
         (STIFF | {"scene.belt_speed": 1.0}, {"over": COULOMB, "above": 1.21}, False, "1.2"),
         (SOFT | {"scene.belt_speed": {"from": 2.0}}, {"minus": COULOMB, "below": 0.0}, True, "-0.05"),
@@ -191,7 +197,7 @@ SOFT = {"law": "dahl", "law.presliding_length": 10.0}
             SOFT | {"scene.belt_speed": [1.0, 2.0]},
             {"minus": STIFF, "above": 0.0},
             False,
-            "-0.06 in the worst of 2 rows",
+            "-0.06 in the worst of 2 rows, that of dahl by auto at belt speed 2",
         ),
         # those that are subtracted are not compared with themselves
         ({}, {"minus": COULOMB, "above": -0.06}, True, "-0.05 in the worst of 4 rows"),

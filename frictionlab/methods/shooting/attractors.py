@@ -425,12 +425,25 @@ class Destination(Protocol):
 
 def describe(reached: Sequence[Destination], digits: int = 9) -> str:
     """A sentence on the steady states that several starts reached, with so many digits of their means."""
-    known = {(one.period, f"{one.mean:.6g}"): one for one in reached if not math.isnan(one.mean)}
-    parts = [_describe_state(one, digits) for one in known.values()]
+    parts = [_describe_state(one, digits) for one in _different(reached)]
     wild = [one.followed for one in reached if math.isnan(one.mean)]
     if wild:
         parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {max(wild)} drive periods")
     return "; ".join(parts)
+
+
+def _different(reached: Sequence[Destination]) -> list[Destination]:
+    """Those with a mean, each state once: a longer orbit with the mean of a shorter one repeats that."""
+    found: list[Destination] = []
+    for one in sorted((each for each in reached if not math.isnan(each.mean)), key=lambda each: each.period):
+        if not any(_repeats(one, other) for other in found):
+            found.append(one)
+    return sorted(found, key=list(reached).index)
+
+
+def _repeats(one: Destination, other: Destination) -> bool:
+    whole = one.period % other.period == 0 if other.period else one.period == 0
+    return whole and f"{one.mean:.6g}" == f"{other.mean:.6g}"
 
 
 def left_unfinished(reached: Sequence[Attractor]) -> str:
@@ -449,6 +462,8 @@ def _describe_state(orbit: Destination, digits: int) -> str:
         return f"a motion that does not repeat has a mean of {orbit.mean:.6g} over {orbit.followed} drive periods"
     if orbit.period == 1:
         return f"an orbit of one drive period has a mean of {orbit.mean:.{digits}g}"
+    if f"{orbit.low:.6g}" == f"{orbit.high:.6g}":
+        return f"an orbit of {orbit.period} drive periods has a mean of {orbit.mean:.{digits}g} over each"
     return (
         f"an orbit of {orbit.period} drive periods has means over one from {orbit.low:.6g} to {orbit.high:.6g}, "
         f"{orbit.mean:.{digits}g} over all"

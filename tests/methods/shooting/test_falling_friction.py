@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.shooting.attractors import Destination, describe
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse
 from frictionlab.theory.uniqueness import is_convergent
@@ -314,3 +317,19 @@ def test_a_prescribed_slip_keeps_its_digits_where_it_only_just_reverses(below):
     _, row = solve(one, law)
 
     assert row["mean_friction"] == pytest.approx((ahead - back) / math.pi, abs=row["error"] + 1e-13)
+
+
+def test_a_state_is_described_once_however_often_its_orbit_was_counted() -> None:
+    def end(period: int, mean: float, spread: float = 0.1) -> Destination:
+        ends = (mean - spread, mean + spread)
+        return cast(
+            "Destination", SimpleNamespace(period=period, mean=mean, low=ends[0], high=ends[1], followed=9)
+        )
+
+    assert describe([end(36, 0.2), end(18, 0.2), end(18, 0.3)], 3) == (
+        "an orbit of 18 drive periods has means over one from 0.1 to 0.3, 0.2 over all; "
+        "an orbit of 18 drive periods has means over one from 0.2 to 0.4, 0.3 over all"
+    )
+    assert describe([end(18, 0.3, 0.0), end(1, 0.3)], 3) == "an orbit of one drive period has a mean of 0.3"
+    assert describe([end(18, 0.3, 0.0)], 3) == "an orbit of 18 drive periods has a mean of 0.3 over each"
+    assert describe([end(2, 0.3), end(3, 0.3)], 3).count("an orbit of") == 2

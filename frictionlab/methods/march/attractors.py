@@ -74,8 +74,7 @@ class OtherStarts:
         if march.unmoved:
             depth = march.law.presliding()
             return [MarchState(0j, 0j, np.array([side * depth])) for side in (1.0, -1.0)]
-        limit = march.mass.normal_load * march.at_rest
-        return [march.place(start) for start in starts(march.scene, limit)[1:]]
+        return [march.place(start) for start in starts(march.scene, march.law)[1:]]
 
     def _led(self, run: MarchResult) -> Arrival:
         mean, like, spread = run.mean.real, self.like, run.high - run.low

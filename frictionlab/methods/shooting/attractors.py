@@ -15,7 +15,13 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
-from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, largest_modulus
+from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
+from frictionlab.methods.periodic.problem import (
+    PeriodicProblem,
+    Transient,
+    along_the_belt,
+    largest_modulus,
+)
 from frictionlab.methods.shooting.long_mean import LongMean
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Initial, Scene
@@ -30,6 +36,8 @@ NEARLY_REPEATED = 1e-3
 """How near states of an orbit are, over their size, between which fewer periods are tried for an orbit."""
 PLACES_ON_THE_BELT = 6
 """Starts at rest along the way of the belt in a period."""
+UNREPEATED = 8
+"""Starts of motions that do not repeat: a state that a third of all starts reach is missed by 4 % of so many."""
 POINTS_KEPT = 100
 """States that are kept of a motion that does not repeat."""
 ONE_BRANCH = 1e-3
@@ -144,12 +152,13 @@ def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> A
     return Attractor(0, len(means), float(means.min()), float(means.max()), curve, points)
 
 
-def starts(scene: Scene, limit: float) -> list[Initial | None]:
+def starts(scene: Scene, law: FrictionLaw) -> list[Initial | None]:
     """Starts far from each other: shaken freely, resting on the belt, flung against it, and let go ahead of it.
 
-    limit: force of friction at rest. ``scene.initial``, where it is given, comes first. Where the belt would carry
-    the mass for longer than a start is followed before it slips, the others start nearer to where it does.
+    ``scene.initial``, where it is given, comes first. Where the belt would carry the mass for longer than a start is
+    followed before it slips, the others start nearer to where it does. In the plane the last two move across, too.
     """
+    limit = scene.mass().normal_load * friction_at_rest(law)
     given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
     belt, periods = scene.belt_speed, carried_for(scene, limit)
     side, way = math.copysign(1.0, belt), limit * (FEWEST / periods if periods > MOST else 1.0)
@@ -157,7 +166,27 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
     shaken = None if way == limit else Initial(x=side * limit)
     flung = Initial(x=last - side * 2.0 * way, velocity=-side * (abs(belt) + way))
     ahead = Initial(x=side * (limit + force_swing(scene)))
-    return [*given, shaken, Initial(x=last, velocity=belt), flung, ahead]
+    resting = Initial(x=last, velocity=belt)
+    return [*given, shaken, resting, *moving_across(scene, law, [flung, ahead])]
+
+
+def moving_across(scene: Scene, law: FrictionLaw, along: Sequence[Initial]) -> list[Initial]:
+    """These starts, in the plane each with a motion across the belt besides, as wide as friction and load hold there.
+
+    Its phases are spread.
+    """
+    if along_the_belt(scene, law):
+        return list(along)
+    mass, signals = scene.mass(), scene.signals()
+    load = max(map(abs, signals.load[1].extremes(signals.period)))
+    width = (mass.normal_load * friction_at_rest(law) + load) / mass.transverse_stiffness
+    pace = math.sqrt(mass.transverse_stiffness)
+    # multiples of this share, less whole numbers, are spread evenly however many there are
+    across = [cmath.rect(width, 2.0 * math.pi * GOLDEN_SHARE * k) for k in range(1, len(along) + 1)]
+    return [
+        one.model_copy(update={"x2": one.x2 + each.real, "velocity2": one.velocity2 + pace * each.imag})
+        for one, each in zip(along, across, strict=True)
+    ]
 
 
 def carried_for(scene: Scene, limit: float) -> float:
@@ -170,20 +199,28 @@ def carried_for(scene: Scene, limit: float) -> float:
     return CLIMBS * limit / mass.stiffness / way if way > 0.0 else 0.0
 
 
-def resting_starts(scene: Scene, limit: float, count: int = PLACES_ON_THE_BELT) -> list[Initial]:
+def resting_starts(scene: Scene, law: FrictionLaw, count: int = PLACES_ON_THE_BELT) -> list[Initial]:
     """At rest on the belt, at places along the way it goes in one period, before the one at which slip begins.
 
     Whatever rests on the belt at some time begins to slip at one phase of the drive, and goes on from there as
-    anything else that begins to slip at that phase does. These starts begin at phases spread over the period.
-    limit: force of friction at rest.
+    anything else that begins to slip at that phase does. These starts begin at phases spread over the period; in the
+    plane friction holds them in directions that are spread, too.
     """
     mass, signals, belt = scene.mass(), scene.signals(), scene.belt_speed
-    velocity = belt + float(signals.belt[0](0.0))
+    velocity, velocity2 = belt + float(signals.belt[0](0.0)), float(signals.belt[1](0.0))
     side, period = math.copysign(1.0, belt), 2.0 * math.pi / mass.frequency * scene.periods
-    last = (float(signals.load[0](0.0)) - mass.damping * velocity + side * limit) / mass.stiffness
-    longest = 2.0 * limit / mass.stiffness
-    way = min(abs(belt) * period, longest) if belt != 0.0 else longest
-    return [Initial(x=last - side * way * (k + 0.5) / count, velocity=velocity) for k in range(count)]
+    limit, planar = mass.normal_load * friction_at_rest(law), not along_the_belt(scene, law)
+    load, load2 = (float(each(0.0)) for each in signals.load)
+    places = []
+    for k in range(count):
+        held = cmath.rect(limit, math.pi * (GOLDEN_SHARE * (k + 1) % 1.0 - 0.5) if planar else 0.0)
+        last = (load - mass.damping * velocity + side * held.real) / mass.stiffness
+        longest = 2.0 * held.real / mass.stiffness
+        way = min(abs(belt) * period, longest) if belt != 0.0 else longest
+        x2 = (load2 - mass.transverse_damping * velocity2 + held.imag) / mass.transverse_stiffness
+        aside = {"x2": x2, "velocity2": velocity2} if planar else {}
+        places.append(Initial(x=last - side * way * (k + 0.5) / count, velocity=velocity, **aside))
+    return places
 
 
 def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
@@ -194,7 +231,11 @@ def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
         x += math.copysign(shift, scene.belt_speed)
     turns = [math.pi * (k + 0.5) / 2.0 for k in range(4)]
     thrown = [cmath.rect(share * force_swing(scene), turn) for share in (0.5, 1.0) for turn in turns]
-    return [Initial(x=x.real + each.real, velocity=v.real + each.imag) for each in thrown]
+    along = [
+        Initial(x=x.real + each.real, velocity=v.real + each.imag, x2=x.imag, velocity2=v.imag)
+        for each in thrown
+    ]
+    return moving_across(scene, law, along)
 
 
 def force_swing(scene: Scene) -> float:
@@ -217,7 +258,8 @@ def quick_starts(problem: PeriodicProblem, belt_speed: float) -> list[tuple[comp
 def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> FollowedStarts:
     """Starts followed to where they lead. The candidate is an orbit already known.
 
-    More starts follow the first ones for as long as all of them reach one closed orbit.
+    More starts follow the first ones for as long as all of them reach one closed orbit, or where motions that do not
+    repeat leave open what others reach.
     """
     followed = FollowedStarts(problem, scene, candidate)
     first, more = all_starts(problem, scene)
@@ -226,7 +268,7 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
         if sum(one.stopped for one in followed.reached) < 2:
             followed.follow(start)
     for start in more:
-        if not followed.one_orbit() or sum(one.stopped for one in followed.reached) > 1:
+        if not followed.one_state_so_far() or sum(one.stopped for one in followed.reached) > 1:
             break
         followed.follow(start)
     return followed
@@ -236,9 +278,9 @@ def all_starts(
     problem: PeriodicProblem, scene: Scene, more: int = 0
 ) -> tuple[list[Initial | None], list[Initial]]:
     """Those that are followed always, and those that follow where the first ones agree; more: at rest on the belt."""
-    limit = problem.mass.normal_load * friction_at_rest(problem.law)
-    others = [*resting_starts(scene, limit), *thrown_starts(problem, scene)]
-    return starts(scene, limit), [*others, *resting_starts(scene, limit, more)]
+    law = problem.law
+    others = [*resting_starts(scene, law), *thrown_starts(problem, scene)]
+    return starts(scene, law), [*others, *resting_starts(scene, law, more)]
 
 
 class FollowedStarts:
@@ -261,10 +303,11 @@ class FollowedStarts:
         """Where those led that were not stopped on their way; all, where every one was."""
         return [one for one in self.reached if not one.stopped] or self.reached
 
-    def one_orbit(self) -> bool:
-        """Whether all that were not stopped ended on one closed orbit."""
-        first, *others = self.ended
-        return first.curve is not None and all(first.agrees(other) for other in others)
+    def one_state_so_far(self) -> bool:
+        """Whether all that were not stopped ended on one closed orbit, or may yet: few, and some do not repeat."""
+        repeating = [one for one in self.ended if one.curve is not None]
+        alike = all(repeating[0].agrees(other) for other in repeating[1:])
+        return alike and (len(repeating) == len(self.ended) or len(self.reached) < UNREPEATED)
 
     @property
     def trial(self) -> Trial:

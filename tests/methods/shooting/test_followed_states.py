@@ -55,6 +55,24 @@ def test_states_that_the_first_starts_miss_are_found(scene, law, means, finds, m
     assert Shooting().solve([scene], law, 1e-8).status == ["ok"], f"{finds} are not what finds it"
 
 
+@pytest.mark.parametrize(("phase", "direction"), [(65.5, 85.2), (125.5, -85.2)])
+def test_beside_a_motion_that_does_not_repeat_is_an_orbit_that_starts_along_the_belt_miss(phase, direction):
+    """An unrelated integration by fixed steps ends on it from three of eight starts, at a damping ratio of .002."""
+    scene = fl.Scene(
+        damping_ratio=0.0443, normal_load=1.545, belt_speed=0.15415,
+        belt_vibration=fl.BeltVibration(
+            velocity_amplitude=0.2246, frequency=1.00336, phase=phase, direction=direction
+        ),
+        transverse=fl.Transverse(natural_frequency=0.60346, damping_ratio=0.02),
+    )  # fmt: skip
+    answer = Shooting().solve([scene], fl.Coulomb(mu=0.5173, mu_static=0.6806), 1e-8)
+    found = {one.period: one for one in answer.states(0)}
+
+    assert answer.status == ["not_unique"]
+    assert (found[0].mean, found[1].mean) == pytest.approx((0.52334, 0.51323), abs=2e-5)
+    assert found[0].share + found[1].share == pytest.approx(1.0)
+
+
 def test_an_orbit_of_a_neighbour_is_carried_on(monkeypatch):
     """One start at each belt speed: the neighbour alone says that there is another state."""
     monkeypatch.setattr(attractors, "all_starts", lambda *_: ([None], []))

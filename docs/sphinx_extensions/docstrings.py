@@ -82,8 +82,8 @@ def _without_entries(text: str, names: list[str]) -> tuple[str, dict[str, tuple[
         kept.append("" if starts and before.rstrip().endswith(":") else before)
         for start, end in pairwise([*starts, len(block)]):
             said, *more = re.split(r"\n(?=Sources?: |Raises )", block[start:end], maxsplit=1)
-            head, colon, meaning = said.partition(": ")
-            for part in [head] if colon else re.split(r"; |, (?=\w+ \[)| or ", said):
+            head, colon, meaning = " ".join(said.split()).partition(": ")
+            for part in [head] if colon else re.split(r"; |, (?=\w+ \[)| or ", head):
                 bare = re.sub(r"\[[^\]]*\]|\([^)]*\)|[<>]=? ?\w+", "", part)
                 told = [name for name in names if re.search(rf"(?<![\w.]){name}\b", bare)]
                 limits = re.findall(r"(?<=\[)[^\]]*|[<>]=? ?[\w.]+", part)

@@ -39,10 +39,14 @@ def describing_function(
     The slip velocity is -belt_speed + amplitude sin(frequency time); Im(amplitude D_k exp(i k frequency time)) is the
     k-th harmonic of friction. A real part of D_1 above 0 damps, an imaginary one below 0 is stiffness.
 
-    amplitude [velocity] > 0; frequency [rad/time] > 0; belt_speed [velocity]: 0 about rest; arrays of these are
-    broadcast. normal_load > 0: for laws of a contact_stiffness or contact_damping. A tuple of two amplitudes, along
-    x1 and x2 (complex ones lead by their angle), is slip in the plane: D has 2 x 2 numbers, row i of friction along
-    i, column j over the slip velocity along j, NaN where that is 0. For harmonics > 1 the first axis is the harmonic.
+    amplitude [velocity], > 0: of the slip velocity along the belt; a tuple of two is slip in the plane.
+    frequency [rad/time], > 0: circular.
+    belt_speed [velocity]: that about which slip oscillates; 0: about rest.
+    normal_load [force], > 0: of which laws of a contact_stiffness or contact_damping are taken per unit.
+    harmonics: the number of D_k; where larger than 1 the first axis is the harmonic.
+
+    Arrays are broadcast. In the plane, amplitudes along x1 and x2 (complex ones lead by their angle), D_k has 2 x 2
+    numbers: row i of friction along i, column j over the slip velocity along j, NaN where that is 0.
 
     The closed loop of the law under that slip, its harmonics integrated; where the start decides on the mean, from an
     undeflected contact. Coulomb at rest gives 4 mu/(pi amplitude): Sulollari, van Dalen & Cabboi, Eq. 9.

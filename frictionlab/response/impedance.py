@@ -23,10 +23,13 @@ def impedance(
 ) -> Any:
     """Complex change of the friction coefficient per change of slip velocity, about steady sliding on the belt.
 
-    belt_speed [velocity]: of steady sliding; 0: about rest, at an undeflected bristle. frequencies [rad/time]:
-    circular. Arrays of both are broadcast; one number [1/velocity] for each, in the units of the law, with exp(i
-    frequency time): a real part above 0 damps, an imaginary one above 0 is inertia, below 0 stiffness.
-    across: of changes across the belt, in the plane. plot: return the figure, Bode and Nyquist, instead.
+    Z [1/velocity], one for each frequency, in the units of the law, for changes as exp(i frequency time): a real part
+    above 0 damps, an imaginary part above 0 is inertia, below 0 stiffness.
+
+    belt_speed [velocity]: of steady sliding; 0: about rest, at an undeflected bristle.
+    frequencies [rad/time]: circular; an array of belt speeds is broadcast against them.
+    plot: whether to return the figure, Bode and Nyquist, instead of the numbers.
+    across: whether slip and friction change across the belt, in the plane.
 
     Z = f_v + f_z (i frequency - r_z)^-1 r_v, with derivatives of friction f and of the rate r of what is remembered,
     each by differences extrapolated to zero; 0 in sliding where friction depends on the path alone (Dahl, Jenkins).

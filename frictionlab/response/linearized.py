@@ -85,8 +85,7 @@ def _steady_memory(law: FrictionLaw, speed: float) -> list[float]:
 def _answer_of(law: Any, speed: float, memory: list[float], across: bool) -> Callable[[Floats], Floats]:
     """What gives the rates of all numbers and friction after small changes of slip and memory, along or across."""
     unit: Any = 1j if across else 1.0
-    turning = law.memory_kind != "scalars"  # scalars stay what they are while slip turns a little
-    change = unit if turning else float(not across)
+    change = 1.0 if law.memory_kind == "scalars" else unit
 
     def answer(by: Floats) -> Floats:
         v, *moved = by.tolist()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from maxwell_slip import MaxwellSlip
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 import frictionlab as fl
 from frictionlab.theory.loops import (
@@ -79,6 +79,32 @@ def test_on_a_moving_belt_harmonics_are_those_of_quadrature(law: Any, ratio: flo
     )
 
 
+def harmonic_of_bristles(law: Any, size: float, belt_speed: float) -> complex:
+    """The first harmonic by steps of high order from one reversal to the next, over the third period from rest."""
+    turn = math.asin(belt_speed / size)
+    edges = np.array([turn + n * math.pi - (2.0 * turn if n % 2 else 0.0) for n in range(7)])
+
+    def rates(theta: float, state: Any) -> list[float]:
+        v = size * math.sin(theta) - belt_speed
+        dz = law.rate(v, state[0])
+        friction = law.friction(v, state[0], dz)
+        return [dz / OMEGA, friction * math.sin(theta) / math.pi, friction * math.cos(theta) / math.pi]
+
+    state, kept = np.zeros(3), []
+    for span in pairwise(edges):
+        kept.append(state[1:])
+        state = solve_ivp(rates, span, state, method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
+    return complex(*(state[1:] - kept[4]))
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.4])
+def test_damped_bristles_are_those_of_another_integrator(ratio: float) -> None:
+    law = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stiffness=4, damping=0.3, viscosity=0.1)
+    found = fl.describing_function(law, 2.0, OMEGA, belt_speed=2.0 * ratio)
+
+    assert 2.0 * found == pytest.approx(harmonic_of_bristles(law, 2.0, 2.0 * ratio), rel=1e-9)
+
+
 @pytest.mark.parametrize("size", [1e-3, 7e-3, 1e-2, 1.0])
 def test_sliders_in_parallel_add_up_whether_they_slip_or_not(size: float) -> None:
     for arguments in ((size, OMEGA), (size, OMEGA, 0.3 * size), ((size, 0.5j * size), OMEGA)):
@@ -114,16 +140,18 @@ def test_law_by_axis_gives_each_axis_its_own_though_one_be_elastic() -> None:
     assert found[1, 1] == pytest.approx(STIFFNESS / (1j * OMEGA), rel=1e-12)
 
 
-def test_contact_stiffness_and_units_are_taken_per_unit_of_load() -> None:
-    pressed = fl.Dahl(mu=MU, contact_stiffness=10 * STIFFNESS)
-    fine = fl.Dahl(mu=MU, presliding_length="1 um")
+@pytest.mark.parametrize("amplitude", [1e-3, 0.03])
+def test_contact_stiffness_is_taken_per_unit_of_load(amplitude: float) -> None:
+    pressed = fl.Jenkins(mu=MU, contact_stiffness=10 * STIFFNESS)
+    found = fl.describing_function(pressed, amplitude, OMEGA, normal_load=10)
 
-    assert fl.describing_function(pressed, 0.03, OMEGA, normal_load=10) == fl.describing_function(
-        DAHL, 0.03, OMEGA
-    )
-    assert fl.describing_function(fine, 1e-4, 100.0) == fl.describing_function(
-        fl.Dahl(mu=MU, presliding_length=1e-6), 1e-4, 100.0
-    )
+    assert found == pytest.approx(fl.describing_function(JENKINS, amplitude, OMEGA), rel=1e-14)
+
+
+def test_numbers_with_units_are_taken_in_si() -> None:
+    written, plain = (fl.Dahl(mu=MU, presliding_length=length) for length in ("1 um", 1e-6))
+
+    assert fl.describing_function(written, 1e-4, 100.0) == fl.describing_function(plain, 1e-4, 100.0)
 
 
 @pytest.mark.parametrize(

@@ -99,6 +99,7 @@ def test_about_rest_a_contact_is_a_spring_and_a_dashpot(law: Any) -> None:
     damping = getattr(law, "bristle_damping", 0.0) + getattr(law, "viscosity", 0.0)
 
     assert fl.impedance(law, 0.0, 2.0) == pytest.approx(damping + stiffness / 2.0j, rel=1e-12)
+    assert fl.impedance(law, 0.0, 0.0) == math.inf
 
 
 def test_it_does_not_depend_on_the_direction_of_the_belt_nor_on_the_order_of_frequencies() -> None:

@@ -230,7 +230,10 @@ def _span(best: pd.DataFrame, along: str, speed: str) -> Markup:
             ends = told.format(law, verb, *_means_at(rows, names, [0, -1], IN_SHORT))
             return ends + _zero(mean, error, rows[along])
     told = Markup("Mean friction of {} is smallest, {}, at {} and largest, {}, at {}")
-    return told.format(law, *_means_at(rows, names, [least, most], IN_SHORT))
+    low, at_low, high, at_high = _means_at(rows, names, [least, most], IN_SHORT)
+    alike = int((mean >= mean[most] - error[most] - error).sum())
+    where = at_high if alike == 1 else Markup("{} of {} points").format(alike, len(rows))
+    return told.format(law, low, at_low, high, where)
 
 
 def _zero(mean: Floats, error: Floats, places: pd.Series) -> Markup:

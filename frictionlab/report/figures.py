@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -111,7 +112,8 @@ def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
     shown = Markup(shown[:1].upper() + shown[1:])
     if maps is None:
         told = [Markup("{} against {}").format(shown, over) if columns else _described(run, name)]
-        lines = list(_lines(family))
+        drawn = [each for each in family.curves if name != "differences" or each.law != run.figures.reference]
+        lines = list(_lines(replace(family, curves=drawn)))
     else:
         told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
         names = (joined_values(run.figures.table[name]) for name in ("law", "method"))
@@ -125,8 +127,9 @@ def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
         f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
         for column, found in known.items()
     )
-    alone = maps is None and len(family.panels) * max(1, len(columns)) == 1
-    return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", alone)
+    beside = maps is not None and name == "mean_friction" and run.figures.error_seen
+    pictures = len(family.panels if maps is None else maps.pictures) * (max(1, len(columns)) + beside)
+    return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", pictures == 1)
 
 
 def _lines(family: Family) -> Iterator[Markup]:

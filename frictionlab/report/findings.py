@@ -189,11 +189,17 @@ def with_remark(run: Facts) -> pd.Series:
 def trouble_grid(run: Facts) -> Grid:
     """Every point that is not plainly ok, those of like reasons together, with examples."""
     odd = run.table[(run.table["status"] != "ok") | with_remark(run)]
+    odd = odd.assign(reason=odd["reason"].map(_without_test, na_action="ignore"))
     groups = odd.groupby([odd["status"], odd["reason"].map(pattern)], sort=False)
     ordered = sorted(groups, key=lambda group: (group[0][0] == "ok", -len(group[1])))
     rows = [_trouble(run, str(status), rows) for (status, _), rows in ordered]
     head = ["status", "points", "reason", "laws", "methods", "for example"]
     return grid("Points that are not plainly ok", head, rows, "reasons")
+
+
+def _without_test(reason: str) -> str:
+    """How starts were tested is told once, of all points."""
+    return reason.partition(f"; {SAYS_TESTED}")[0]
 
 
 def _trouble(run: Facts, status: str, rows: pd.DataFrame) -> list[Cell]:

@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from frictionlab import __version__
 from frictionlab.charts.figures import FigureData
@@ -98,6 +98,7 @@ def _style() -> Markup:
 def _head(run: Facts) -> dict[str, Any]:
     shown, rows = pictures(run), len(run.table)
     return {
+        "heading": Markup("V<sub>lin</sub>").join(map(escape, run.saved.title.split("V_lin"))),
         "sentences": sentences(run),
         "first": shown[:1],
         "pictures": shown[1:],

@@ -308,7 +308,7 @@ def test_many_expectations_are_folded_and_not_left_out_where_they_all_hold(ran: 
 
     assert len(held.table("What the study expects")) == 21
     assert "all 20 expectations hold." in held.all("header")[0].text
-    assert "Show all 20, which hold" in [each.text for each in held.all("summary")]
+    assert "All 20 hold" in [each.text for each in held.all("summary")]
     assert failed.table("What the study expects")[1][0] == "FAILED"
     assert "expectations of the study hold" not in failed.all("main")[0].text
     assert [each.text for each in failed.all("summary")] == [

@@ -152,7 +152,8 @@ def uniqueness_grid(run: Facts) -> Grid:
     """How it is known of points that no start ends elsewhere, in the methods' own sentences; by how many points."""
     head = ["unique", "how it is known", "points", "laws"]
     told = run.table["model"].where(run.table["unique"] == "proved", run.table["reason"])
-    rows = _by_sentence(run.table, "unique", each_once(told, _how_unique))
+    how = each_once(told, _how_unique).mask(run.table["unique"] == "no", "other starts end elsewhere")
+    rows = _by_sentence(run.table, "unique", how)
     return grid("Whether every start ends there", head, rows, "kinds")
 
 

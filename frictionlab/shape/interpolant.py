@@ -128,7 +128,7 @@ def check_points(curve: FrictionCurve) -> None:
         raise UnreadableCurve(f"the curve {last} below the end of reversal, {end:.6g}")
     if below.size < LEAST_POINTS:
         raise UnreadableCurve(
-            f"{below.size} points below the end of reversal, {end:.6g}; needs {LEAST_POINTS}"
+            f"points below the end of reversal, {end:.6g}: {below.size} of the {LEAST_POINTS} needed"
         )
     places = np.concatenate(([0.0], below, [end]))
     gap = int(np.argmax(np.diff(places)))

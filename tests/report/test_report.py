@@ -253,10 +253,10 @@ def test_a_point_that_is_ok_with_a_reservation_and_one_that_has_a_range_are_told
 
 
 def test_how_it_is_known_that_a_state_is_the_only_one_is_no_trouble(ran: Runner) -> None:
-    saved = ran(**at_speeds(1.0, 2.0, 3.0))
-    saved.table["unique"] = ["proved", "tested", None]
+    saved = ran(**at_speeds(1.0, 2.0, 3.0, 4.0))
+    saved.table["unique"] = ["proved", "tested", None, "no"]
     saved.table["model"] = "fake; unique: dashpots damp (A & B, 2008) (auto: fake, it is cheap)"
-    saved.table["reason"] = [None, "tested: 2 starts up to 5 apart ended here", None]
+    saved.table["reason"] = [None, "tested: 2 starts up to 5 apart ended here", None, None]
     page = page_of(saved)
     head, *rows = page.table("Whether every start ends there")
 
@@ -264,6 +264,7 @@ def test_how_it_is_known_that_a_state_is_the_only_one_is_no_trouble(ran: Runner)
     assert [row[:3] for row in rows] == [
         ["proved", "dashpots damp (A & B, 2008)", "1 point"],
         ["tested", "2 starts up to 5 apart ended here", "1 point"],
+        ["no", "other starts end elsewhere", "1 point"],
     ]
     assert not any("look at" in heading.text for heading in page.all("h2"))
 

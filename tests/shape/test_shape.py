@@ -175,7 +175,7 @@ def test_what_is_not_known_about_an_end_is_in_the_errors(end: str) -> None:
     ("speed", "reason"),
     [
         (np.linspace(0.01, 0.99, 50), "ends at belt speed 0.99, below the end of reversal, 1"),
-        (np.linspace(0.15, 1.2, 8), "6 points below the end of reversal, 1; needs 8"),
+        (np.linspace(0.15, 1.2, 8), "points below the end of reversal, 1: 6 of the 8 needed"),
         (np.append(np.linspace(0.01, 0.5, 30), [0.75, 1.0]), "no point between belt speeds 0.5 and 0.75"),
         (np.linspace(0.25, 1.2, 40), "no point between belt speeds 0 and 0.25"),
         (np.array([]), "the curve has no points below"),

@@ -242,7 +242,8 @@ def test_every_point_that_is_not_ok_is_counted_with_its_reason_and_examples(
 
 def test_a_point_that_is_ok_with_a_reservation_and_one_that_has_a_range_are_told(ran: Runner) -> None:
     saved = ran(**at_speeds(1.0, 2.0, 3.0))
-    saved.table["reason"] = [None, "the error is above the tolerance", "three starts, two means"]
+    remark = "the error is above the tolerance; tested: 2 starts ended here"
+    saved.table["reason"] = [None, remark, "three starts, two means"]
     saved.table.loc[2, ["mean_low", "mean_high", "window"]] = [0.1, 0.25, 100.0]
     saved.table.loc[2, "status"] = "not_unique"
     first, second = page_of(saved).table("Points that are not plainly ok")[1:]
@@ -460,6 +461,26 @@ def test_captions_say_what_is_drawn_what_tells_curves_apart_and_what_is_held_fix
         "Held fixed: β1 = 0.1, γ2 = 10, α = 10, φ1 = 0 deg. Without a number, and marked as such: 2 points refused."
     )
     assert first.description.endswith("mean friction coefficient μ̄: from 0.1015 to 0.1015.")
+
+
+def test_a_first_figure_of_one_picture_stands_beside_what_is_said_of_it(ran: Runner) -> None:
+    page = page_of(ran(title="All beyond V_lin", **at_speeds(1.0, 2.0)))
+
+    assert page.all("header")[0].attributes.get("class") == "beside"
+    assert page.all("h1")[0].text == "All beyond Vlin"
+    assert "Every number: results.csv" in page.all("nav")[0].text
+
+
+def test_the_caption_of_differences_names_the_laws_that_are_drawn(ran: Runner) -> None:
+    laws = [
+        {"kind": "coulomb", "mu": mu, "label": label} for mu, label in ((0.4, "rough"), (0.2, "slippery"))
+    ]
+    saved = ran(laws=laws, figures={"against": "rough", "finding": "differences"}, **at_speeds(1.0, 2.0))
+    (saved.folder / "figures" / "differences.svg").write_text(SVG)
+    first = pictures(Facts(saved))[0]
+
+    assert first.name == "differences"
+    assert "Law slippery; " in first.caption.striptags()
 
 
 def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:

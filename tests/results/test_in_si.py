@@ -84,7 +84,9 @@ def test_a_sentence_with_a_number_in_the_scales_of_the_scene_is_said_somewhere(w
 def test_sentences_have_lengths_and_speeds_in_si_units_once() -> None:
     scales = {"length": 5e-6, "velocity": 5e-4}
     said = "tested: starts up to 240 apart; points below the end of reversal, 7.53982: 5 of the 8 needed"
-    wanted = "tested: starts up to 1.2 mm apart; points below the end of reversal, 3.7699 mm/s: 5 of the 8 needed"
+    wanted = (
+        "tested: starts up to 1.2 mm apart; points below the end of reversal, 3.7699 mm/s: 5 of the 8 needed"
+    )
 
     assert in_si_words(said, scales) == wanted
     assert in_si_words(wanted, scales) == wanted

@@ -42,7 +42,7 @@ def height_sentence(run: Facts) -> Markup:
     if told := _models(run):
         return begun(Markup("; ").join(told) + _without(table, best))
     ranking = ranking_of(table, along)
-    first = _span(best, along, run.speed) if ranking is None else _Ranked(ranking, along).sentence()
+    first = _span(best, along, run.speed) if ranking is None else _Ranked(ranking, along, run).sentence()
     if table["law"].nunique() == 1:
         first += _methods(run)
     return first + _alone(run) + _without(table, best)
@@ -121,6 +121,7 @@ class _Ranked(NamedTuple):
 
     ranking: Ranking
     along: str
+    run: Facts
 
     def sentence(self) -> Markup:
         """Who is highest where, and by how much."""
@@ -131,9 +132,8 @@ class _Ranked(NamedTuple):
             return Markup("{} is the same within errors for {}{}").format(what, names, self.everywhere)
         gaps = " (of those with a number)" if self.ranking.has_gaps else ""
         if self.winners is None:
-            return Markup("No {} is highest everywhere{}: {}").format(
-                "curve" if self.one_law else "law", gaps, self.spread()
-            )
+            what = "curve" if self.one_law else "law"
+            return Markup("No {} is highest everywhere{}{}").format(what, gaps, self.spread())
         told = Markup("{} is highest for {}{}{} {}")
         if len(first) == 1:
             return told.format(what, self.name(first[0]), gaps, ":", self.excess())
@@ -177,10 +177,13 @@ class _Ranked(NamedTuple):
         return Markup("; ").join([listed(told), *alike])
 
     def spread(self) -> Markup:
-        """How far the highest is above the lowest at most, for each setting where these are few."""
-        return Markup("; ").join(
-            self.apart(*ends) for ends in self.ranking.widest(self.along, MOST_STRETCHES)
-        )
+        """How far the highest is above the lowest at most, or any from the reference law, by settings if few."""
+        against, names = None, [each["law"] for each in self.ranking.ranked]
+        if len(names) > 2 and not self.one_law and names.count(self.run.figures.reference) == 1:
+            against = names.index(self.run.figures.reference)
+        ends = self.ranking.widest(self.along, MOST_STRETCHES, against)
+        begin = ": " if against is None else f"; furthest from {escape(names[against])}: "
+        return Markup(begin) + Markup("; ").join(self.apart(*each) for each in ends)
 
     def apart(self, at: int, high: int, low: int) -> Markup:
         """How far one is above another at a point."""

@@ -49,18 +49,26 @@ class Ranking:
         cuts = [0, *(np.flatnonzero(np.diff(self.first)) + 1).tolist(), len(self.first)]
         return [(int(self.first[start]), start, stop - 1) for start, stop in pairwise(cuts)]
 
-    def widest(self, along: str, most: int) -> list[tuple[int, int, int]]:
-        """Where the highest is furthest above the lowest: the point, and the places of both.
+    def widest(self, along: str, most: int, against: int | None = None) -> list[tuple[int, int, int]]:
+        """Where the highest is furthest above the lowest, or one furthest from the one against which all are held.
+
+        Each with the point, the place of the higher one and that of the lower.
 
         For each setting of what is not along the axis, where these are so many at most; else once.
         """
         others = [name for name in self.points if name != along]
         groups = self.points.reset_index(drop=True).groupby(others, sort=False).indices if others else {}
         every = [np.arange(len(self.points))]
-        return [self._widest(places) for places in (groups.values() if 0 < len(groups) <= most else every)]
+        told = groups.values() if 0 < len(groups) <= most else every
+        return [self._widest(places, against) for places in told]
 
-    def _widest(self, places: NDArray[np.int64]) -> tuple[int, int, int]:
+    def _widest(self, places: NDArray[np.int64], against: int | None) -> tuple[int, int, int]:
         mean = self.mean[places]
+        if against is not None:
+            apart = np.abs(mean - mean[:, [against]])
+            row, who = divmod(int(np.nanargmax(apart)), apart.shape[1])
+            low, high = sorted((who, against), key=lambda each: float(mean[row, each]))
+            return int(places[row]), high, low
         at = int(np.argmax(np.nanmax(mean, axis=1) - np.nanmin(mean, axis=1)))
         return int(places[at]), int(np.nanargmax(mean[at])), int(np.nanargmin(mean[at]))
 

@@ -11,6 +11,7 @@ from typing import Any, cast
 import pandas as pd
 import pytest
 
+from frictionlab.charts.figures import FigureData
 from frictionlab.report.answer import sentences
 from frictionlab.report.facts import Facts
 from frictionlab.results.expectations import Verdict
@@ -45,8 +46,9 @@ def told(
     methods = [SimpleNamespace(label=name, is_reduced=name == "mdsm") for name in ("exact", "mdsm")]
     study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}, methods=methods, in_words=IN_WORDS))
     saved = Saved(Path(), study, table, pd.DataFrame(curves) if curves else None, account)
+    drawn = cast("FigureData", SimpleNamespace(reference="Coulomb"))
     assert saved.verdicts == [Verdict(passed, "x") for passed in verdicts]
-    return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved))]
+    return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved, drawn))]
 
 
 def shape(law: str, verdict: str | None, reason: str | None = None, **others: Any) -> dict[str, Any]:
@@ -98,6 +100,14 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
             curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
         ],
         "No law is highest everywhere: dahl is up to 0.1 above Coulomb, at vb = 1.",
+    ),
+    "of several laws that change places the one furthest from the reference law is told": (
+        [
+            curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
+            curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
+            curve("lugre", [0.3, 0.1, 0.1, 0.05, 0.1, 0.1]),
+        ],
+        "No law is highest everywhere; furthest from Coulomb: lugre is up to 0.2 above Coulomb, at vb = 1.",
     ),
     "laws that do not differ by more than their errors are the same": (
         [curve("coulomb", [0.1, 0.2], error=0.02), curve("dahl", [0.11, 0.19], error=0.02)],

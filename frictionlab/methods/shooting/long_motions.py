@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -38,14 +39,15 @@ REPEATED = 1e-6
 class LongMotion:
     """One motion that has not repeated, and the means of its periods since it was followed on.
 
-    start: where it was left before. sizes: of its states. end: where it leads, once it is known to repeat.
+    start: where it was left before. path: the state before the first period and those after each, of these sizes.
+    end: where it leads, once it is known to repeat.
     """
 
     def __init__(self, problem: PeriodicProblem, scene: Scene, start: Attractor) -> None:
         self._problem, self._scene, self.start = problem, scene, start
         self.means: Floats = np.empty(0)
         self.sizes: Floats = np.empty(0)
-        self.states: Floats = start.points[-1:]
+        self.states = self.path = start.points[-1:]
         self.end: Attractor | None = None
         self.seconds = 0.0
 
@@ -53,6 +55,7 @@ class LongMotion:
         """On to so many periods in all, and to its end where it turns out to repeat; known: ends of others."""
         way = self._way(self.states[-1], length - len(self.means), ACCURACY)
         self.means, self.states = np.concatenate([self.means, way.means]), way.states
+        self.path = np.concatenate([self.path, way.states])
         self.sizes = np.concatenate([self.sizes, np.linalg.norm(way.states, axis=1)])
         period = late_period(self.states)
         if period:
@@ -63,9 +66,19 @@ class LongMotion:
             self.end = end if end.curve is not None else None
             self.seconds += more
 
+    def linger(self) -> None:
+        """On to the greatest length, however many steps that takes; means before another one set in are forgotten."""
+        while len(self.means) < LENGTHS[-1] and self.may_go_on:
+            self.follow(LENGTHS[-1])
+        half = len(self.means) // 2
+        while half >= FEWEST_AVERAGED:
+            if not near_each_other(long_mean([self.means[:half]]), long_mean([self.means[half:]])):
+                self.means, self.sizes, self.path = self.means[half:], self.sizes[half:], self.path[half:]
+            half //= 2
+
     def off_by_maps(self) -> float:
         """By how much finer maps change its weighted mean."""
-        way = self._way(self.start.points[-1], len(self.means), FINER)
+        way = self._way(self.path[0], len(self.means), FINER)
         return abs(birkhoff_mean(way.means) - birkhoff_mean(self.means[: len(way.means)]))
 
     def _way(self, state: Floats, periods: int, accuracy: float) -> Transient:
@@ -128,9 +141,28 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
             place in means and means[place].error <= enough for place in open_
         ):
             break
-    means = with_errors_of_maps(motions, means)
+    repeats = len(open_) < len(followed.reached)
+    means = with_errors_of_maps(motions, once_joined(motions, means, repeats))
     followed.lead_to({place: motion.averaged(means.get(place)) for place, motion in motions.items()})
     followed.seconds += sum(motion.seconds for motion in motions.values())
+
+
+def once_joined(
+    motions: dict[int, LongMotion], means: dict[int, LongMean], repeats: bool
+) -> dict[int, LongMean]:
+    """The same, once chaotic motions have been followed on to see whether they join another state; the commonest mean
+    stays, unless other starts repeat.
+
+    Chaos may linger for hundreds of periods beside an orbit that repels.
+    """
+    if len(set(means.values())) + repeats < 2:
+        return means
+    shares = Counter(means.values())
+    most = max(shares, key=lambda mean: shares[mean])
+    for place, mean in means.items():
+        if not mean.quasi_periodic and (repeats or mean is not most):
+            motions[place].linger()
+    return means_of_attractors(motions)
 
 
 def means_of_attractors(motions: dict[int, LongMotion]) -> dict[int, LongMean]:

@@ -202,6 +202,35 @@ def test_a_motion_of_many_steps_is_averaged_where_three_goes_are_enough(a_go, ha
     assert followed.reached[0].followed == (3 * a_go if has_mean else 500)
 
 
+def test_chaos_that_lingers_elsewhere_for_hundreds_of_periods_counts_for_what_it_joins():
+    """Of many steps, so that three goes end before it joins."""
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    problem = PeriodicProblem(scene, fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), 1e-8)
+    states = np.repeat(problem.state_at(5.0, None)[None, :], 4, axis=0)
+    states[:, 0] = 0.0, 0.0, -700e-9, -1.0  # a clock: where it is negative, the motion has not joined yet
+
+    def many_steps(speed, state, periods, accuracy):
+        count = min(214, periods)
+        path = RANDOM.uniform(-1.0, 1.0, (count, len(state)))
+        path[:, 0] = state[0] + 1e-9 * np.arange(1, count + 1)
+        around = np.where(path[:, 0] < 0.0, 0.35, 0.37)
+        return Transient(0, around + RANDOM.uniform(-0.01, 0.01, count), path, path[-1], 0.0)
+
+    problem.followed_on = many_steps
+    means = {}
+    for other in (2, 3):
+        followed = FollowedStarts(problem, scene, None)
+        followed.reached += [Attractor(500, 0, 0.0, 1.0, None, states[k : k + 1]) for k in (0, 1, other)]
+        average_unrepeated(problem, scene, followed)
+        means[other] = [one.average for one in followed.reached]
+
+    assert len(set(means[2])) == 1
+    assert abs(means[2][0].mean - 0.37) < means[2][0].error + 1e-3
+    assert len(set(means[3])) == 2
+
+
 def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():
     """A weighted mean repeats to rounding; finer maps move it by more than that."""
     scene = fl.Scene(

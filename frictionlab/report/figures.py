@@ -95,9 +95,9 @@ def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
     found = f"periods of the response found: {', '.join(map(str, periods))}" if periods else "nothing repeats"
     wild = "; grey where the motion does not repeat" if (rows["period"] == 0).any() else ""
     caption = Markup(
-        "Of {} by {}: every state that motions end in, above the means over a whole period (with the range of means "
-        "over one drive period), below the position at the start of each drive period. A marker for each period of "
-        "the response{}; {}."
+        "Law {}, method {}: every state that motions end in, above the means over a whole period (with the range "
+        "of means over one drive period), below the position at the start of each drive period. A marker for each "
+        "period of the response{}; {}."
     ).format(joined_values(rows["law"]), joined_values(rows["method"]), wild, found)
     return _picture(run, name, caption)
 

@@ -259,7 +259,7 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
     """Starts followed to where they lead. The candidate is an orbit already known.
 
     More starts follow the first ones for as long as all of them reach one closed orbit, or where motions that do not
-    repeat leave open what others reach.
+    repeat leave open what others reach. Beside such motions the candidate itself is one of the starts.
     """
     followed = FollowedStarts(problem, scene, candidate)
     first, more = all_starts(problem, scene)
@@ -271,6 +271,9 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
         if not followed.one_state_so_far() or sum(one.stopped for one in followed.reached) > 1:
             break
         followed.follow(start)
+    wild = any(one.curve is None and not one.stopped for one in followed.ended)
+    if candidate is not None and wild and not any(one.agrees(candidate) for one in followed.ended):
+        followed.carry(candidate.points[-1])  # an orbit that attracts, which no start happened to reach
     return followed
 
 

@@ -73,6 +73,18 @@ def test_beside_a_motion_that_does_not_repeat_is_an_orbit_that_starts_along_the_
     assert found[0].share + found[1].share == pytest.approx(1.0)
 
 
+def test_beside_stick_and_slip_that_do_not_repeat_the_mass_may_slide_on():
+    """An unrelated integration by fixed steps slides on from one of eight starts, at .32936; none of ours does."""
+    vibration = fl.BeltVibration(velocity_amplitude=0.434095, frequency=1.10073464, phase=48.6)
+    scene = fl.Scene(damping_ratio=0.040774, normal_load=10.1503, belt_speed=0.7886, belt_vibration=vibration)
+    law = fl.Stribeck(mu_kinetic=0.32936265, mu_static=0.46706881, stribeck_speed=0.10251888)
+    answer = Shooting().solve([scene], law, 1e-8)
+    found = {one.period: one.mean for one in answer.states(0)}
+
+    assert answer.status == ["not_unique"]
+    assert found == pytest.approx({0: 0.33841, 1: 0.32936}, abs=2e-5)
+
+
 def test_an_orbit_of_a_neighbour_is_carried_on(monkeypatch):
     """One start at each belt speed: the neighbour alone says that there is another state."""
     monkeypatch.setattr(attractors, "all_starts", lambda *_: ([None], []))

@@ -38,7 +38,7 @@ def fit_command(
     plugins: Plugins,
     as_json: bool,
 ) -> int:
-    """FittedLaws the laws of STUDY to the measurements that its data name, by the numbers that its free names.
+    """Fit the laws of STUDY to the measurements that its data name, by the numbers that its free names.
 
     fit.csv has each number with its errors and its interval of 95 %, fit_laws.csv how well each law fits and
     foretells blocks left out, residuals.csv what is left. A figure and a page stand beside. An interrupt keeps the
@@ -55,8 +55,10 @@ def fit_command(
         missing = "data" if asked.data is None else "free"
         example = "data: {file: measured.csv}" if missing == "data" else "free: {mu: [0.1, 1.0]}"
         raise CommandError(WRONG, f"{study}: a study to fit has data and free; write {example}")
+    folder = out or Path("fits") / study.stem
     try:
         measured = measured_of(asked)
+        options.make_folder(folder)
         laws = [choice.law_class(**choice.parameters, label=choice.label) for choice in asked.laws]
         with metered() as meter:
             meter.begins("fitting")
@@ -64,7 +66,6 @@ def fit_command(
             found = fit_measured(measured, laws, scene, asked.free, tell=meter.begins)
     except (WrongData, ValueError) as problem:
         raise CommandError(WRONG, str(problem)) from None
-    folder = out or Path("fits") / study.stem
     _write(found, asked.title or study.stem, folder)
     if as_json:
         print_records(records(found.table))
@@ -74,16 +75,10 @@ def fit_command(
 
 
 def _write(found: FittedLaws, title: str, folder: Path) -> None:
-    """Tables, figure and page. Raises SaveError, FolderError."""
-    from frictionlab.runner.errors import FolderError, SaveError
+    """Tables, figure and page. Raises SaveError."""
+    from frictionlab.runner.errors import SaveError
     from frictionlab.runner.files import write_whole
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise FolderError(
-            f"cannot make the folder {folder}: {problem.strerror}; give another one with -o"
-        ) from problem
     for name, table in (("fit", found.table), ("fit_laws", found.laws), ("residuals", found.residuals)):
         write_whole(folder / f"{name}.csv", table.to_csv(None, index=False, lineterminator="\n").encode())
     try:

@@ -55,7 +55,7 @@ def needs_command(
 
     asked = load_study(study, overrides, law_files, plugins)
     if out is not None:
-        _make(out)
+        options.make_folder(out)
     found = list(needs_of_study(asked, within))
     if not as_json:
         print_result("\n".join(_lines(found)))
@@ -89,18 +89,6 @@ def _form(line: str) -> tuple[str, str]:
 
     what, _, rest = line.partition(":")
     return what, pattern(rest)
-
-
-def _make(out: Path) -> None:
-    """Make the folder, before anything is computed. Raises FolderError."""
-    from frictionlab.runner.errors import FolderError
-
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise FolderError(
-            f"cannot make the folder {out}: {problem.strerror}; give another one with -o"
-        ) from problem
 
 
 def _write(table: DataFrame, title: str, out: Path) -> None:

@@ -63,3 +63,15 @@ def check_laws(names: Iterable[str], known: Laws) -> None:
         if name not in known.names():
             said, hint = unknown_name("law", name, list(known.names()))
             raise click.UsageError(f"{said}; {hint}" if hint else said)
+
+
+def make_folder(out: Path) -> None:
+    """Make the folder, before anything is computed. Raises FolderError."""
+    from frictionlab.runner.errors import FolderError
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise FolderError(
+            f"cannot make the folder {out}: {problem.strerror}; give another one with -o"
+        ) from problem

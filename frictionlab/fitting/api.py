@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from frictionlab.fitting.blocks import blocks_of
@@ -28,7 +27,7 @@ def fit(
     starts: int = STARTS,
     tell: Callable[[str], None] | None = None,
 ) -> FittedLaws:
-    """FittedLaws numbers of laws, and of their scene, to measurements by least squares.
+    """Fit numbers of laws, and of their scene, to measurements by least squares.
 
     data: a table (or a list of tables, or a mapping of columns) with ``belt_speed`` (``belt_speed_m_per_s`` for a
     scene in SI units) and ``mean_friction``, or with ``time``, ``slip`` [a length] and ``friction`` [coefficient] for
@@ -55,11 +54,7 @@ def fit(
     laws = [given_law(each) for each in (law if isinstance(law, Sequence) else [law])]
     body = None if scene is None else given_scene(scene)
     in_si = body is not None and body.dimensional is not None
-    measured = given_measurements(data, in_si=in_si)
-    if blocks is not None:
-        measured = Measurements(
-            measured.table.assign(block=np.asarray(blocks)), measured.value, measured.missing
-        )
+    measured = given_measurements(data, in_si=in_si, blocks=blocks)
     return fit_measured(measured, laws, body, free or {}, starts, tell)
 
 

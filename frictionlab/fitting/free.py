@@ -71,9 +71,8 @@ class Model:
         values = self.values(shares)
         of_scene = {name.removeprefix("scene."): x for name, x in values.items() if name.startswith("scene.")}
         of_law = {name: x for name, x in values.items() if not name.startswith("scene.")}
-        return with_numbers(self.law, of_law), self.scene.with_(
-            **of_scene
-        ) if self.scene and of_scene else self.scene
+        scene = self.scene.with_(**of_scene) if self.scene and of_scene else self.scene
+        return with_numbers(self.law, of_law), scene
 
 
 def with_numbers(law: FrictionLaw, values: Mapping[str, float]) -> FrictionLaw:
@@ -102,7 +101,7 @@ def free_numbers(
     of_scene = {} if scene is None else _numbers_of(scene.given_values(), "scene.")
     known = [_numbers_of(dict(law), "") for law in laws]
     for name in given:
-        if name not in of_scene and not any(_has(law, name) for law in known):
+        if name not in of_scene and not any(name in law for law in known):
             every = [*of_scene, *(each for law in known for each in law)]
             hint = closest(name, every)
             raise ValueError(
@@ -110,7 +109,7 @@ def free_numbers(
             )
     ranges = {name: _range(name, value) for name, value in given.items()}
     return {
-        place: tuple(each for name, each in ranges.items() if name in of_scene or _has(law, name))
+        place: tuple(each for name, each in ranges.items() if name in of_scene or name in law)
         for place, law in enumerate(known)
     }
 
@@ -123,10 +122,6 @@ def _numbers_of(values: Mapping[str, Any], before: str) -> dict[str, Any]:
         elif value is None or (isinstance(value, float | int) and not isinstance(value, bool)):
             found[f"{before}{name}"] = value
     return found
-
-
-def _has(numbers: Mapping[str, Any], name: str) -> bool:
-    return name in numbers
 
 
 def _range(name: str, given: Any) -> FreeNumber:

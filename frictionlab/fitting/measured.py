@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from frictionlab.mistakes.notes import closest
 from frictionlab.quantities import Floats
 
-CURVE, PATH = ("belt_speed", "mean_friction"), ("time", "slip", "friction")
-"""The columns that a curve needs, and those that a path of slip needs."""
+OF_A_PATH = ("time", "slip", "friction")
+"""The columns that a path of slip needs."""
 OTHERS = ("sigma", "block")
 GAP = 3.0
 """A step of time so many times the usual one is a gap: what was remembered before it is not known after it."""
@@ -61,24 +62,27 @@ class Measurements:
         """The column that residuals are told along."""
         return "time" if self.is_path else next(name for name in self.table if name.startswith("belt_speed"))
 
-    def rows(self, chosen: Any) -> Measurements:
-        """Some of the rows."""
-        return Measurements(self.table[chosen].reset_index(drop=True), self.value, self.missing)
-
 
 class WrongData(ValueError):
     """Measurements that cannot be fitted, with the place and what to do."""
 
 
-def given_measurements(data: Any, where: str = "data", in_si: bool = False) -> Measurements:
+def given_measurements(
+    data: Any, where: str = "data", in_si: bool = False, blocks: ArrayLike | None = None
+) -> Measurements:
     """A table, a mapping of columns, or a list of such, as one. where: what messages call it. in_si: of the scene.
 
-    Raises WrongData.
+    blocks: a label for each row, in place of the column. Raises WrongData.
     """
     tables = data if isinstance(data, Sequence) and not isinstance(data, str) else [data]
     if not len(tables):
         raise WrongData(f"{where}: no table is given")
-    return _checked(pd.concat([_as_table(each, where) for each in tables], ignore_index=True), where, in_si)
+    whole = pd.concat([_as_table(each, where) for each in tables], ignore_index=True)
+    if blocks is not None:
+        if len(labels := np.asarray(blocks)) != len(whole):
+            raise WrongData(f"blocks: one label a row is needed, {len(whole)}, got {len(labels)}")
+        whole = whole.assign(block=labels)
+    return _checked(whole, where, in_si)
 
 
 def _as_table(data: Any, where: str) -> pd.DataFrame:
@@ -96,7 +100,7 @@ def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
     is_path = "time" in table or "slip" in table
     speed = "belt_speed_m_per_s" if in_si else "belt_speed"
     table = _friction_over_load(table, is_path, where)
-    wanted = PATH if is_path else (speed, "mean_friction")
+    wanted = OF_A_PATH if is_path else (speed, "mean_friction")
     for name in wanted:
         if name not in table:
             hint = closest(name, list(table.columns))
@@ -111,7 +115,7 @@ def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
             table = table.assign(**{name: _numbers(table[name], name, where)})
     missing = 0
     if is_path:
-        known = table[list(PATH)].notna().all(axis=1)
+        known = table[list(OF_A_PATH)].notna().all(axis=1)
         missing, table = int((~known).sum()), table[known].reset_index(drop=True)
         _check_times(table, where)
     _check_finite(table, where)

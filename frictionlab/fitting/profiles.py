@@ -26,13 +26,8 @@ NEAR_ENOUGH = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Of one number: shares of its range at which it was held, by how much twice the cost rose over its threshold.
+    """Of one number: the ends of its interval, in shares of its range; form: its shape in a word."""
 
-    low, high: ends of the interval, in shares; form: its shape in a word.
-    """
-
-    shares: Floats
-    rise: Floats
     low: float
     high: float
     form: ProfileForm
@@ -73,7 +68,7 @@ def profile(
         form = "flat"
     elif inside[0] or inside[-1]:
         form = "one-sided"
-    return Profile(grid, rises, low, high, form)
+    return Profile(low, high, form)
 
 
 def _end(

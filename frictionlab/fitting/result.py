@@ -308,9 +308,10 @@ def _what_to_know(fit: FittedLaws) -> list[str]:
             if form != "bounded":
                 told.append(f"{several}the profile of {name} is {form}")
         values = np.array([*each.values.values()])
-        slopes = np.array([one.slope(x) / x for one, x in zip(each.model.free, values, strict=True)])
-        if seen := unseen_sentence(
-            [*each.values], values, np.outer(slopes, slopes) * each.covariances.by_blocks
+        slopes = np.array([one.slope(x) for one, x in zip(each.model.free, values, strict=True)])
+        spread = np.outer(slopes, slopes) * each.covariances.by_blocks
+        if values.all() and (
+            seen := unseen_sentence([*each.values], values, spread / np.outer(values, values))
         ):
             told.append(f"{several}{seen}")
         if each.found.others:

@@ -87,7 +87,8 @@ def _range(value: Any, name: str, notes: Notes) -> Any:
     else:
         notes.add(path, f"must be a range such as [0.1, 1.0], got {value_text(value)}")
         return value
-    numbers = [notes.number(end, place) for end, place in zip(ends, places, strict=True) if end is not None]
-    if len(numbers) == 2 and None not in numbers and not numbers[0] < numbers[1]:  # type: ignore[operator]
+    read = [notes.number(end, place) for end, place in zip(ends, places, strict=True) if end is not None]
+    numbers = [number for number in read if number is not None]
+    if len(numbers) == 2 and not numbers[0] < numbers[1]:
         notes.add(path, f"must rise, got {numbers[0]:g} to {numbers[1]:g}")
     return value

@@ -10,6 +10,7 @@ import click
 from frictionlab.cli import options
 from frictionlab.cli.output import (
     FAILED,
+    INTERRUPTED,
     OK,
     WRONG,
     CommandError,
@@ -63,7 +64,7 @@ def fit_command(
         with metered() as meter:
             meter.begins("fitting")
             scene = None if measured.is_path else asked.scene
-            found = fit_measured(measured, laws, scene, asked.free, tell=meter.begins)
+            found = fit_measured(measured, laws, scene, asked.free, tell=meter.begins).complete(meter.begins)
     except (WrongData, ValueError) as problem:
         raise CommandError(WRONG, str(problem)) from None
     _write(found, asked.title or study.stem, folder)
@@ -71,7 +72,7 @@ def fit_command(
         print_records(records(found.table))
     else:
         print_result("\n".join([*found.sentences, f"tables, figure and page in {folder}"]))
-    return FAILED if found.failed else OK
+    return INTERRUPTED if found.is_interrupted else FAILED if found.failed else OK
 
 
 def _write(found: FittedLaws, title: str, folder: Path) -> None:

@@ -11,7 +11,7 @@ from frictionlab.fitting.blocks import blocks_of
 from frictionlab.fitting.free import Model, free_numbers
 from frictionlab.fitting.measured import Measurements, given_measurements
 from frictionlab.fitting.residuals import Residuals
-from frictionlab.fitting.result import FittedLaw, FittedLaws
+from frictionlab.fitting.result import STOPPED, FittedLaw, FittedLaws
 from frictionlab.fitting.search import STARTS, search
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner.arguments import given_law, given_scene
@@ -93,7 +93,7 @@ def fit_measured(
         except KeyboardInterrupt:
             if not fitted:
                 raise
-            failed |= {each.label: "interrupted" for each in models[len(fitted) + len(failed) :]}
+            failed |= {each.label: STOPPED for each in models[len(fitted) + len(failed) :]}
             break
         raw = residuals.raw(found.best.shares)
         if residuals.unanswered:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -133,6 +134,14 @@ class FittedLaw:
         return count * float(np.log(np.mean(self.raw**2) or 1e-300)) + 2.0 * (numbers + 1)
 
 
+STOPPED = "interrupted"
+"""Why a law has no fit where the search or its errors were stopped."""
+PARTS_OF_A_FIT: dict[str, Callable[[FittedLaw], Any]] = {
+    "profiles": lambda law: law.profiles,
+    "blocks left out": lambda law: law.left_out,
+}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedLaws:
     """Laws fitted to measurements, the best first told: that which foretells blocks left out best.
@@ -143,6 +152,32 @@ class FittedLaws:
     measured: Measurements
     fitted: tuple[FittedLaw, ...]
     failed: dict[str, str] = field(default_factory=dict)
+
+    def complete(self, tell: Callable[[str], None]) -> FittedLaws:
+        """Errors, profiles and what is foretold found now, law by law; an interrupt keeps the laws that are done.
+
+        tell: is told what is being found. Raises KeyboardInterrupt where none is done.
+        """
+        done: list[FittedLaw] = []
+        for each in self.fitted:
+            try:
+                for what, find in PARTS_OF_A_FIT.items():
+                    tell(f"{each.model.label}: {what}")
+                    find(each)
+            except KeyboardInterrupt:
+                if not done:
+                    raise
+                left = self.fitted[len(done) :]
+                return FittedLaws(
+                    self.measured, tuple(done), self.failed | {one.model.label: STOPPED for one in left}
+                )
+            done.append(each)
+        return self
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether laws were left out because of an interrupt."""
+        return STOPPED in self.failed.values()
 
     @property
     def best(self) -> FittedLaw:

@@ -14,6 +14,7 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.fitting.blocks import correlation_length
 from frictionlab.fitting.measured import WrongData, given_measurements
+from frictionlab.fitting.result import PARTS_OF_A_FIT, FittedLaw
 
 SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 SPEEDS = np.linspace(2.0, 58.0, 30)
@@ -254,6 +255,30 @@ def test_the_command_writes_tables_a_figure_and_a_page(
     assert {"fit.svg", "fit.png"} == {path.name for path in (folder / "figures").iterdir()}
     assert "coulomb" in (folder / "report.html").read_text()
     assert len(pd.read_csv(folder / "residuals.csv")) == 30
+
+
+def test_an_interrupt_keeps_the_laws_that_are_done(
+    study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = STUDY.replace("mu: 0.3}]", "mu: 0.3, label: one}, {kind: coulomb, mu: 0.3, label: other}]")
+    study.write_text(other)
+
+    def stopped(law: FittedLaw) -> Any:
+        if law.model.label == "other":
+            raise KeyboardInterrupt
+        return law.left_out
+
+    monkeypatch.setitem(PARTS_OF_A_FIT, "blocks left out", stopped)
+    assert cli.main(["fit", str(study)]) == 130
+    assert "other has no fit: interrupted" in capsys.readouterr().out
+    assert pd.read_csv(study.parent / "fits" / "study" / "fit.csv")["law"].to_list() == ["one"]
+
+
+def test_blocks_given_beside_are_checked_as_a_column_is() -> None:
+    with pytest.raises(WrongData, match="all rows are of one block"):
+        fl.fit(GOOD, fl.Coulomb(mu=0.4), SCENE, {"mu": (0.1, 1.0)}, blocks=[1, 1, 1])
+    with pytest.raises(WrongData, match="one label a row is needed, 3, got 2"):
+        fl.fit(GOOD, fl.Coulomb(mu=0.4), SCENE, {"mu": (0.1, 1.0)}, blocks=[1, 2])
 
 
 def test_run_solves_the_study_where_it_was_measured(study: Path) -> None:

@@ -80,7 +80,8 @@ ARROWS = {
         ),
         "report": "charts columns printable quantities registry results runner scene study units",
         "fitting": (
-            "charts compile dynamics faults laws mistakes printable quantities report runner scene study theory"
+            "charts columns compile dynamics faults laws mistakes printable quantities "
+            "report runner scene study theory"
         ),
         "notebook": "charts columns report results runner scene study units",
         "explore": "charts columns report results runner units",

@@ -48,29 +48,29 @@ def draw_fit(found: Any, title: str, folder: Path) -> list[Path]:
 def _draw_measured(axes: Axes, found: Any, looks: list[Any]) -> None:
     """Mean friction against belt speed, a line for each law and scene."""
     measured = found.measured
-    table, values = measured.table, measured.values
-    speeds = table[measured.along].to_numpy(dtype=float)
-    errors = None if measured.sigma is None else measured.sigma
-    axes.errorbar(speeds, values, yerr=errors, elinewidth=0.7, zorder=1, **MEASURED)
-    inputs = [name for name in table if name.startswith("scene.")]
-    groups = list(table.groupby(inputs, sort=False).indices.values()) if inputs else [np.arange(len(table))]
+    speeds = measured.table[measured.along].to_numpy(dtype=float)
+    axes.errorbar(speeds, measured.values, yerr=measured.sigma, elinewidth=0.7, zorder=1, **MEASURED)
     for each, look in zip(found.fitted, looks, strict=True):
-        for places in groups:
+        for _, places in measured.groups:
             rising = places[np.argsort(speeds[places], kind="stable")]
             axes.plot(speeds[rising], each.said[rising], **look)
-    axes.set(xlabel=word(_input_of(measured.along)), ylabel=word("mean_friction"))
+    axes.set(xlabel=word(measured.speed), ylabel=word("mean_friction"))
 
 
 def _draw_loops(axes: Axes, found: Any, looks: list[Any]) -> None:
     """Friction against slip, some of the path."""
-    table, count = found.measured.table, len(found.measured.values)
-    first = max(0, count // 2 - POINTS_SHOWN // 2)
-    shown = slice(first, first + POINTS_SHOWN)
-    slip = table["slip"].to_numpy(dtype=float)[shown]
+    shown = _shown(len(found.measured.values))
+    slip = found.measured.table["slip"].to_numpy(dtype=float)[shown]
     axes.plot(slip, found.measured.values[shown], zorder=1, **MEASURED | {"markersize": 1.2})
     for each, look in zip(found.fitted, looks, strict=True):
         axes.plot(slip, each.said[shown], **look)
     axes.set(xlabel="slip", ylabel="friction coefficient")
+
+
+def _shown(rows: int) -> slice:
+    """Those in the middle of a path that are drawn."""
+    first = max(0, rows // 2 - POINTS_SHOWN // 2)
+    return slice(first, first + POINTS_SHOWN)
 
 
 def _draw_left(axes: Axes, found: Any, looks: list[Any]) -> None:
@@ -78,15 +78,14 @@ def _draw_left(axes: Axes, found: Any, looks: list[Any]) -> None:
     along = found.measured.table[found.measured.along].to_numpy(dtype=float)
     chosen = np.argsort(along, kind="stable")
     if found.measured.is_path:
-        first = max(0, len(chosen) // 2 - POINTS_SHOWN // 2)
-        chosen = chosen[first : first + POINTS_SHOWN]
+        chosen = chosen[_shown(len(chosen))]
     for each, look in zip(found.fitted, looks, strict=True):
         own = (
             {"marker": ".", "markersize": 3.0, "linewidth": 0.6} if len(chosen) < 200 else {"linewidth": 0.5}
         )
         axes.plot(along[chosen], each.raw[chosen], **look | own)
     axes.axhline(0.0, color="0.5", linewidth=0.7)
-    name = "time" if found.measured.is_path else word(_input_of(found.measured.along))
+    name = "time" if found.measured.is_path else word(found.measured.speed)
     axes.set(xlabel=name, ylabel="fitted less measured")
 
 
@@ -100,7 +99,3 @@ def _draw_alike(axes: Axes, found: Any, looks: list[Any]) -> None:
     for side in (-1.0, 1.0):
         axes.axhline(side * 2.0 / np.sqrt(count), color="0.5", linewidth=0.7, linestyle=(0, (4, 2)))
     axes.set(xlabel="lag [rows]", ylabel="autocorrelation")
-
-
-def _input_of(along: str) -> str:
-    return "scene.belt_speed" if along == "belt_speed" else "scene.dimensional.belt_speed_m_per_s"

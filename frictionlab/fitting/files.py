@@ -63,9 +63,7 @@ def at_measured_points(study: Study) -> Study:
     if measured.is_path:
         raise WrongData(f"{study.path or 'study'}: {NO_POINTS}")
     inputs = [name for name in measured.table if name.startswith("scene.")]
-    speed = "scene.belt_speed"
-    if study.scene.dimensional is not None:
-        speed = "scene.dimensional.belt_speed_m_per_s"
+    speed = measured.speed
     points = measured.table.rename(columns={measured.along: speed})[[*inputs, speed]].drop_duplicates()
     points = points.sort_values(speed, kind="stable")
     values = {name: tuple(points[name].tolist()) for name in points}

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from frictionlab.columns import BELT_SPEEDS
 from frictionlab.mistakes.notes import closest
 from frictionlab.quantities import Floats
 
@@ -56,6 +57,24 @@ class Measurements:
         far = steps > GAP * np.median(steps) if steps.size else steps > 0.0
         ends = [0, *(int(place) + 1 for place in np.flatnonzero(far)), len(times)]
         return [slice(start, stop) for start, stop in pairwise(ends)]
+
+    @cached_property
+    def groups(self) -> list[tuple[dict[str, float], NDArray[np.int64]]]:
+        """Of a curve the inputs of each scene, by path, and its rows."""
+        inputs = [name for name in self.table if name.startswith("scene.")]
+        if not inputs:
+            return [({}, np.arange(len(self.table)))]
+        found = self.table.groupby(inputs, sort=False).indices.items()
+        each = ((values if isinstance(values, tuple) else (values,), places) for values, places in found)
+        return [
+            ({name.removeprefix("scene."): x for name, x in zip(inputs, values, strict=True)}, places)
+            for values, places in each
+        ]
+
+    @property
+    def speed(self) -> str:
+        """Of a curve the input of a study that its belt speeds are."""
+        return BELT_SPEEDS[self.along.endswith("_m_per_s")]
 
     @property
     def along(self) -> str:

@@ -86,17 +86,13 @@ class Residuals:
         return found
 
     def _curve(self, law: Any, scene: Any) -> Floats:
-        table, found = self.measured.table, np.full(len(self.measured.values), math.nan)
-        inputs = [name for name in table if name.startswith("scene.")]
-        groups = (
-            table.groupby(inputs, sort=False).indices.items() if inputs else [((), np.arange(len(table)))]
-        )
-        for values, places in groups:
-            values = values if isinstance(values, tuple) else (values,)
-            changed = {name.removeprefix("scene."): x for name, x in zip(inputs, values, strict=True)}
+        measured, found = self.measured, np.full(len(self.measured.values), math.nan)
+        given = measured.table[measured.along].to_numpy(dtype=float)
+        for changed, places in measured.groups:
             here = scene.with_(**changed) if changed else scene
-            speeds = table[self.measured.along].to_numpy(dtype=float)[places]
-            rows = curve(here, law, speeds, "auto", FIT_TOLERANCE, columns=["mean_friction"], progress=False)
+            rows = curve(
+                here, law, given[places], "auto", FIT_TOLERANCE, columns=["mean_friction"], progress=False
+            )
             found[places] = rows["mean_friction"].to_numpy(dtype=float)
             known = rows["error"].dropna()
             self.error = max(self.error, float(known.max()) if len(known) else 0.0)

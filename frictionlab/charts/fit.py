@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from frictionlab.charts.sheet import Heading, Sheet
 from frictionlab.charts.style import CYCLE, STYLE, write_figure
@@ -20,6 +21,8 @@ POINTS_SHOWN = 1000
 """Of a path of slip in the first picture: some of its middle, one after the other."""
 MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
 LAGS = 200
+FEW_TICKS = 5
+"""Of belt speeds in m/s, whose numbers are long."""
 
 
 def fit_figure(found: Any, title: str = "") -> Figure:
@@ -51,10 +54,10 @@ def _draw_measured(axes: Axes, found: Any, looks: list[Any]) -> None:
     speeds = measured.table[measured.along].to_numpy(dtype=float)
     axes.errorbar(speeds, measured.values, yerr=measured.sigma, elinewidth=0.7, zorder=1, **MEASURED)
     for each, look in zip(found.fitted, looks, strict=True):
-        for _, places in measured.groups:
-            rising = places[np.argsort(speeds[places], kind="stable")]
-            axes.plot(speeds[rising], each.said[rising], **look)
+        for places in measured.scenes_rising:
+            axes.plot(speeds[places], each.said[places], **look)
     axes.set(xlabel=word(measured.speed), ylabel=word("mean_friction"))
+    axes.xaxis.set_major_locator(MaxNLocator(FEW_TICKS))
 
 
 def _draw_loops(axes: Axes, found: Any, looks: list[Any]) -> None:
@@ -74,19 +77,20 @@ def _shown(rows: int) -> slice:
 
 
 def _draw_left(axes: Axes, found: Any, looks: list[Any]) -> None:
-    """Fitted less measured; of a path that part which the first picture shows."""
-    along = found.measured.table[found.measured.along].to_numpy(dtype=float)
-    chosen = np.argsort(along, kind="stable")
-    if found.measured.is_path:
-        chosen = chosen[_shown(len(chosen))]
+    """Fitted less measured, a line for each law and scene; of a path that part which the first picture shows."""
+    measured = found.measured
+    along = measured.table[measured.along].to_numpy(dtype=float)
+    parts = [np.arange(len(along))[_shown(len(along))]] if measured.is_path else measured.scenes_rising
+    marks = {"linewidth": 0.5} if measured.is_path else {"marker": ".", "markersize": 3.0, "linewidth": 0.6}
     for each, look in zip(found.fitted, looks, strict=True):
-        own = (
-            {"marker": ".", "markersize": 3.0, "linewidth": 0.6} if len(chosen) < 200 else {"linewidth": 0.5}
-        )
-        axes.plot(along[chosen], each.raw[chosen], **look | own)
+        for places in parts:
+            axes.plot(along[places], each.raw[places], **look | marks)
     axes.axhline(0.0, color="0.5", linewidth=0.7)
-    name = "time" if found.measured.is_path else word(found.measured.speed)
-    axes.set(xlabel=name, ylabel="fitted less measured")
+    axes.set(
+        xlabel="time" if measured.is_path else word(measured.speed),
+        ylabel="fitted less measured",
+    )
+    axes.xaxis.set_major_locator(MaxNLocator(FEW_TICKS))
 
 
 def _draw_alike(axes: Axes, found: Any, looks: list[Any]) -> None:

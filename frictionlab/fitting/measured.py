@@ -72,6 +72,12 @@ class Measurements:
         ]
 
     @property
+    def scenes_rising(self) -> list[NDArray[np.int64]]:
+        """Of a curve the rows of each scene, their belt speeds rising."""
+        speeds = self.table[self.along].to_numpy(dtype=float)
+        return [places[np.argsort(speeds[places], kind="stable")] for _, places in self.groups]
+
+    @property
     def speed(self) -> str:
         """Of a curve the input of a study that its belt speeds are."""
         return BELT_SPEEDS[self.along.endswith("_m_per_s")]

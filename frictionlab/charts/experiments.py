@@ -22,6 +22,6 @@ def experiments_figure(table: pd.DataFrame, inputs: Sequence[str]) -> Figure:
             look = {"color": CYCLE[0]["color"], "linestyle": "none", "marker": "o"}
             axes.plot(table[name], table["apart"], markersize=3.0, markerfacecolor="white", **look)
             axes.plot(table[name].iloc[:1], table["apart"].iloc[:1], markersize=6.0, **look)
-            axes.set(xlabel=word(f"scene.{name}"), ylabel="smallest distance [standard errors]")
+            axes.set(xlabel=word(f"scene.{name}"), ylabel=r"smallest distance over $\sigma$")
             axes.set_ylim(bottom=0.0)
     return sheet.figure

@@ -37,7 +37,7 @@ TESTS = (
     "tests/study/test_study.py",
     "tests/theory",
 )
-STUDY = "studies/fig4_strong_friction.yaml"
+STUDY = "studies/paper/fig4_strong_friction.yaml"
 COMMANDS = (
     ["laws"],
     ["methods"],

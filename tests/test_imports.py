@@ -329,7 +329,7 @@ WRITTEN = [
         "plugins/**/*.py",
         "plugins/**/*.md",
         "plugins/**/*.yaml",
-        "studies/*.yaml",
+        "studies/**/*.yaml",
         "docs/**/*.md",
         "*.md",
     )

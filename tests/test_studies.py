@@ -16,7 +16,7 @@ from frictionlab.study import load_study
 PROJECT = Path(__file__).parent.parent
 SI = sorted((PROJECT / "studies" / "si").glob("*.yaml"))
 """Written in units, as from the table of a paper."""
-STUDIES = sorted((PROJECT / "studies").glob("*.yaml")) + SI
+STUDIES = sorted(path for path in (PROJECT / "studies").rglob("*.yaml") if path.parent.name != "measured")
 
 
 SLOW = (

@@ -36,9 +36,14 @@ class Exhibit(NamedTuple):
     found: str
     rows: str = ""
 
+    @property
+    def study(self) -> str:
+        """Its file, seen from the project."""
+        return study_named(self.name).relative_to(STUDIES.parent).as_posix()
+
     def page(self, printed: str) -> str:
         """The page of the study; printed: what the command says."""
-        study = f"../../studies/{self.name}.yaml"
+        study = f"../../{self.study}"
         return f"""# {self.question}
 
 ![{self.title}](figures/{self.name}.svg)
@@ -50,7 +55,7 @@ class Exhibit(NamedTuple):
 ## The study
 
 ```sh
-frictionlab run studies/{self.name}.yaml
+frictionlab run {self.study}
 ```
 
 prints
@@ -81,12 +86,18 @@ from [{self.name}.yaml]({study}):
         return "\n".join([counts, "", head, *kept, *(more if len(kept) < len(lines) else []), expected])
 
 
+def study_named(name: str) -> Path:
+    """Its file, in whichever folder of studies it is."""
+    (file,) = STUDIES.rglob(f"{name}.yaml")
+    return file
+
+
 def exhibits() -> list[Exhibit]:
     """Every study that has words, in their order."""
     yaml = YAML(typ="safe")
     words = yaml.load(GALLERY / "words.yaml")
     return [
-        Exhibit(group, name, yaml.load(STUDIES / f"{name}.yaml")["title"], **said)
+        Exhibit(group, name, yaml.load(study_named(name))["title"], **said)
         for group, studies in words.items()
         for name, said in studies.items()
     ]
@@ -95,10 +106,9 @@ def exhibits() -> list[Exhibit]:
 def make(exhibit: Exhibit) -> None:
     """Run the study; write its page and its figure."""
     with tempfile.TemporaryDirectory() as folder:
-        study = f"studies/{exhibit.name}.yaml"
-        finding = load_study(STUDIES.parent / study).figures.finding
+        finding = load_study(study_named(exhibit.name)).figures.finding
         done = subprocess.run(
-            [COMMAND, "run", study, "-o", f"{folder}/run"],
+            [COMMAND, "run", exhibit.study, "-o", f"{folder}/run"],
             cwd=STUDIES.parent,
             stdout=subprocess.PIPE,
             text=True,

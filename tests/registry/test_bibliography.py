@@ -21,7 +21,7 @@ from frictionlab.registry.law_file import read_law_file
 from frictionlab.registry.records import law_record
 
 PLUGINS = Path(__file__).parents[2] / "plugins"
-STUDIES = sorted((Path(__file__).parents[2] / "studies").glob("*.yaml"))
+STUDIES = sorted((Path(__file__).parents[2] / "studies").rglob("*.yaml"))
 SOLVERS = [name for name in registry.method_names() if name != "auto"]  # auto answers by another's work
 CLASSES: list[Any] = [registry.law_class(name) for name in registry.law_names()]
 CLASSES += [registry.method_class(name) for name in SOLVERS]

@@ -535,7 +535,7 @@ def _dotted_keys(tree: dict[str, Any]) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "file", sorted(Path(__file__).parents[2].glob("studies/*.yaml")), ids=lambda file: file.stem
+    "file", sorted(Path(__file__).parents[2].glob("studies/**/*.yaml")), ids=lambda file: file.stem
 )
 def test_the_studies_use_keys_of_the_schema(file: Path) -> None:
     made, tree = schema(), load_study(file).resolved()

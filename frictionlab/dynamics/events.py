@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 @inner
@@ -21,7 +21,7 @@ def dips(w0: Any, rate0: Any, w1: Any, rate1: Any, h: float) -> bool:
 
 
 @fast
-def reference_acceleration(body: Body, sine: float, cosine: float) -> Any:
+def reference_acceleration(body: BodyNumbers, sine: float, cosine: float) -> Any:
     """Second derivative of the harmonic reference."""
     return -(body.frequency**2) * (body.reference_sine * sine + body.reference_cosine * cosine)
 

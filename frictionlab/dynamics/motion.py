@@ -26,7 +26,7 @@ from frictionlab.dynamics.waves import (
     wave_rate,
 )
 from frictionlab.scene import body as _plain
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 from frictionlab.scene.varying import PER_PIECE, Course, Packed
 
 restoring_force = fast(_plain.restoring_force)
@@ -250,16 +250,16 @@ def _course_on_line(varying: Any, course: Course, place: int) -> Course:
 
 
 @inner
-def changed(body: Body, periods: float, varying: Any) -> Body:
+def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
     """The body with another span, and other functions of time."""
-    return Body(
+    return BodyNumbers(
         body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
         body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
         body.reference_sine, body.reference_cosine, periods, body.prescribed, varying,
     )  # fmt: skip
 
 
-def _body_of_piece(body: Body, k: int) -> Body:
+def _body_of_piece(body: BodyNumbers, k: int) -> BodyNumbers:
     old = body.varying
     at = old.whole.lines + PER_PIECE * (k % old.whole.pieces)
     normal = Course(old.normal_load.first, old.normal_load.terms, old.table[at + 8], old.table[at + 9])
@@ -279,7 +279,7 @@ in_piece = by_variation(lambda body, k: body, _body_of_piece)
 """in_piece(body, k): the body as the k-th piece of its span has it."""
 
 
-def _body_at(body: Body, tau: float) -> Body:
+def _body_at(body: BodyNumbers, tau: float) -> BodyNumbers:
     varying, whole = body.varying, body.varying.whole
     k = whole.pieces * math.floor(tau / varying.table[whole.edges + whole.pieces])
     while tau >= _edge(varying, k + 1):
@@ -326,13 +326,13 @@ def slip(body: Any, belt_speed: float, now: Instant, v: Any) -> Any:
 
 
 @fast
-def acceleration_under(body: Body, push: Any, pressed: float, x: Any, v: Any, rub: Any) -> Any:
+def acceleration_under(body: BodyNumbers, push: Any, pressed: float, x: Any, v: Any, rub: Any) -> Any:
     """Acceleration of the mass under a load and a normal load that are known; rub: coefficient of friction."""
     return push - restoring_force(body, x, v) - pressed * rub
 
 
 @fast
-def acceleration(body: Body, now: Instant, x: Any, v: Any, rub: Any) -> Any:
+def acceleration(body: BodyNumbers, now: Instant, x: Any, v: Any, rub: Any) -> Any:
     """Acceleration of the mass; rub: coefficient of friction."""
     return acceleration_under(body, load(body, now), normal_load(body, now), x, v, rub)
 
@@ -347,7 +347,7 @@ def mean_friction(impulse: Any, time: float) -> Any:
 
 
 @inner
-def holding_force(body: Body, belt_speed: float, now: Instant, x: Any) -> Any:
+def holding_force(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
     """The force of friction that keeps a mass at x with the belt, its rate and the rate of that."""
     carried = belt_velocity(body, belt_speed, now) + 0.0 * x
     pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
@@ -360,7 +360,7 @@ def holding_force(body: Body, belt_speed: float, now: Instant, x: Any) -> Any:
     )
 
 
-def _bound_on_a_vibrating_belt(body: Body, belt_speed: float) -> float:
+def _bound_on_a_vibrating_belt(body: BodyNumbers, belt_speed: float) -> float:
     first, second, third = (
         wave_bound(body.varying.table, body.varying.belt, 1),
         wave_bound(body.varying.table, body.varying.belt, 2),
@@ -375,7 +375,7 @@ holding_curvature = by_variation(lambda body, belt_speed: load_curvature(body), 
 
 
 @inner
-def holding_impulse(body: Body, belt_speed: float, start: float, end: float, x: Any) -> Any:
+def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
     """Integral of that force; x at the start."""
     way = belt_path(body, belt_speed, start, end) + 0.0 * x
     positions = (end - start) * x + belt_path_integral(body, belt_speed, start, end)
@@ -385,7 +385,7 @@ def holding_impulse(body: Body, belt_speed: float, start: float, end: float, x: 
 
 
 @inner
-def resting_friction(body: Body, belt_speed: float, start: float, end: float, x: Any) -> Any:
+def resting_friction(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
     """Integral of friction at rest, in shares of the mean normal load."""
     return holding_impulse(body, belt_speed, start, end, x) / body.normal_load
 
@@ -397,7 +397,7 @@ class Flow(NamedTuple):
     """A law and a body on a belt; the side of slip on the line; sine and cosine at the anchor time."""
 
     law: Any
-    body: Body
+    body: BodyNumbers
     belt_speed: float
     side: float
     anchor: float
@@ -432,27 +432,27 @@ def instant_near(problem: Any, tau: float) -> Instant:
 
 
 @inner
-def anchored(law: Any, body: Body, belt_speed: float, side: float, tau: float) -> Flow:
+def anchored(law: Any, body: BodyNumbers, belt_speed: float, side: float, tau: float) -> Flow:
     """The problem with its anchor at this time."""
     angle = body.frequency * tau
     return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
 
 
 @inner
-def reference_position(body: Body, tau: float) -> Any:
+def reference_position(body: BodyNumbers, tau: float) -> Any:
     """Of the friction-free response."""
     angle = body.frequency * tau
     return body.reference_sine * math.sin(angle) + body.reference_cosine * math.cos(angle)
 
 
 @fast
-def reference_velocity(body: Body, sine: float, cosine: float) -> Any:
+def reference_velocity(body: BodyNumbers, sine: float, cosine: float) -> Any:
     """Its derivative."""
     return body.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
 
 
 @inner
-def swing_of(body: Body) -> float:
+def swing_of(body: BodyNumbers) -> float:
     """The speed of the friction-free response against the belt's mean; 1 where it has no bound."""
     swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
         body
@@ -461,26 +461,26 @@ def swing_of(body: Body) -> float:
 
 
 @inner
-def balanced_load(body: Body, now: Instant) -> Any:
+def balanced_load(body: BodyNumbers, now: Instant) -> Any:
     """The force that the reference motion takes."""
     return body.balanced_sine * now.sine + body.balanced_cosine * now.cosine
 
 
 @fast
-def unbalanced_load(body: Body, now: Instant) -> Any:
+def unbalanced_load(body: BodyNumbers, now: Instant) -> Any:
     """What of the load drives the deviation."""
     return load(body, now) - balanced_load(body, now)
 
 
 @inner
-def unbalanced_rate(body: Body, now: Instant) -> Any:
+def unbalanced_rate(body: BodyNumbers, now: Instant) -> Any:
     """Its derivative."""
     rate, _bend = load_rates(body, now)
     return rate - body.frequency * (body.balanced_sine * now.cosine - body.balanced_cosine * now.sine)
 
 
 @fast
-def deviation_acceleration(body: Body, now: Instant, y: Any, u: Any, rub: Any) -> Any:
+def deviation_acceleration(body: BodyNumbers, now: Instant, y: Any, u: Any, rub: Any) -> Any:
     """Acceleration of the deviation; rub: coefficient of friction."""
     return acceleration_under(body, unbalanced_load(body, now), normal_load(body, now), y, u, rub)
 

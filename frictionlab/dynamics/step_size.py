@@ -8,18 +8,18 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.lane_arrays import select
 from frictionlab.dynamics.motion import quickest_of
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 @fast
-def squared(body: Body, x: Any, v: Any) -> float:
+def squared(body: BodyNumbers, x: Any, v: Any) -> float:
     """Twice the energy of a state."""
     elastic = body.stiffness_mean * x + body.stiffness_split * x.conjugate()
     return (elastic * x.conjugate()).real + (v * v.conjugate()).real
 
 
 @inner
-def growth_of(body: Body, taken: Any, accuracy: float) -> float:
+def growth_of(body: BodyNumbers, taken: Any, accuracy: float) -> float:
     """For a step of DOP853, by both of its estimates (Hairer et al., 1993, II.10)."""
     fifth = squared(body, taken.x_error5, taken.v_error5)
     third = squared(body, taken.x_error3, taken.v_error3)
@@ -29,7 +29,7 @@ def growth_of(body: Body, taken: Any, accuracy: float) -> float:
 
 
 @inner
-def wary_growth_of(body: Body, taken: Any, accuracy: float) -> float:
+def wary_growth_of(body: BodyNumbers, taken: Any, accuracy: float) -> float:
     """The same by the fifth-order error alone: the mixture of orders does not see a layer passed in one step."""
     return _growth_at_order_8(math.sqrt(squared(body, taken.x_error5, taken.v_error5)) / accuracy)
 
@@ -57,7 +57,7 @@ def _bounded_growth(error: Any, root: Any) -> Any:
 
 
 @inner
-def longest_step(body: Body, sliding: float, accuracy: float) -> float:
+def longest_step(body: BodyNumbers, sliding: float, accuracy: float) -> float:
     """The longest step: a radian of the loads or of the body's quickest oscillation, less for finer maps.
 
     Were it the same for all, two maps could agree because both are limited by it, and neither be accurate.

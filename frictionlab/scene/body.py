@@ -31,7 +31,7 @@ def for_kernels(mass: Mass) -> Mass:
     return mass._replace(varying=packed(mass.varying, True))
 
 
-class Body(NamedTuple):
+class BodyNumbers(NamedTuple):
     """The numbers of a free scene, for kernels that run on the line (``float``) and in the plane (``complex``).
 
     A constant that differs between x1 and x2 acts as mean*x + split*conj(x), x = x1 + i x2. The motion is the sum of
@@ -61,17 +61,17 @@ class Body(NamedTuple):
     varying: Any = ()
 
 
-def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
+def on_the_line(mass: Mass, periods: float = 1.0) -> BodyNumbers:
     """The body with motion along the belt alone: of one in the plane, alike across, what is along the belt."""
     alike = mass._replace(
         transverse_damping=mass.damping, transverse_stiffness=mass.stiffness, transverse_force=0j
     )
     plane = in_the_plane(alike, periods)._replace(varying=packed(mass.varying, False))
     numbers: list[Any] = [number.real if isinstance(number, complex) else number for number in plane]
-    return Body(*numbers)
+    return BodyNumbers(*numbers)
 
 
-def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
+def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
     """The body with both motions, of a mass as kernels have it."""
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
@@ -79,7 +79,7 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
     force, force_2 = mass.force, mass.transverse_force
     taken = force if reference != 0 else 0j
     taken_2 = force_2 if reference_2 != 0 else 0j
-    return Body(
+    return BodyNumbers(
         damping_mean=0.5 * (mass.damping + mass.transverse_damping),
         damping_split=0.5 * (mass.damping - mass.transverse_damping),
         stiffness_mean=0.5 * (mass.stiffness + mass.transverse_stiffness),
@@ -104,13 +104,13 @@ def _friction_free(damping: float, stiffness: float, frequency: float, force: co
     return force / dynamic if dynamic != 0 else 0j
 
 
-def restoring_force(body: Body, x: Any, v: Any) -> Any:
+def restoring_force(body: BodyNumbers, x: Any, v: Any) -> Any:
     """Force of springs and dashpots per unit mass, to be subtracted from the acceleration."""
     damping = body.damping_mean * v + body.damping_split * v.conjugate()
     return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
 
 
-def span(body: Body) -> float:
+def span(body: BodyNumbers) -> float:
     """The time that one period map covers."""
     return 2.0 * math.pi * body.periods / body.frequency
 

@@ -25,7 +25,7 @@ from frictionlab.dynamics import motion
 from frictionlab.dynamics.motion import START, Instant
 from frictionlab.dynamics.step_size import growth_factor
 from frictionlab.methods.exact import legs, oscillator
-from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
+from frictionlab.scene.body import BodyNumbers, Mass, in_the_plane, on_the_line
 from frictionlab.scene.scene import Scene
 
 HOUSE = Path(frictionlab.__file__).parent
@@ -116,7 +116,7 @@ times, speeds = st.floats(0.5, 9.0), st.floats(-3.0, 3.0)
 STEP = 1e-4
 
 
-def at(body: Body, tau: float) -> Instant:
+def at(body: BodyNumbers, tau: float) -> Instant:
     """An instant, as kernels have it."""
     return interpreted(motion.instant_at)(body, tau)
 

@@ -22,7 +22,7 @@ from frictionlab.methods.march.lap import NOTHING, MarchSettings
 from frictionlab.methods.march.laps import TIRED, MarchState, march_laps
 from frictionlab.numerics.steppers.moreau import moreau_step
 from frictionlab.numerics.steppers.step import StepStart
-from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
+from frictionlab.scene.body import BodyNumbers, Mass, in_the_plane, on_the_line
 
 LAW = Coulomb(mu=0.4)
 END = 10.37
@@ -41,7 +41,7 @@ CROSSING, STICK = Push(10.0, 14.0, False), Push(6.0, 0.5, False)
 SMOOTH = Push(10.0, 14.0, True)
 
 
-def body_of(push: Push) -> Body:
+def body_of(push: Push) -> BodyNumbers:
     """The body of a push, all of its load on it."""
     mass = Mass(
         damping=0.2,
@@ -56,7 +56,7 @@ def body_of(push: Push) -> Body:
     return in_the_plane(mass) if push.planar else on_the_line(mass)
 
 
-def alike() -> Body:
+def alike() -> BodyNumbers:
     """The planar body with springs and dashpots that know no direction."""
     body = body_of(SMOOTH)
     return body._replace(damping_mean=0.2, damping_split=0.0, stiffness_mean=1.0, stiffness_split=0.0)
@@ -141,7 +141,7 @@ class Problem(NamedTuple):
     """What a step of moreau sees."""
 
     law: Any
-    body: Body
+    body: BodyNumbers
     grid: Any
     stepper: Moreau
 

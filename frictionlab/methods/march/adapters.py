@@ -49,7 +49,7 @@ from frictionlab.numerics.steppers.step import (
     normal_load_at,
 )
 from frictionlab.orbit.recorder import panel_writer
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 class Moreau(NamedTuple):
@@ -91,7 +91,7 @@ class MarchProblem(NamedTuple):
     """What a stepper sees; memory, ahead: what the law remembers where a step starts, and where it ends."""
 
     law: Any
-    body: Body
+    body: BodyNumbers
     belt_speed: float
     stepper: Any
     grid: Any  # numerics/steppers/step.py
@@ -117,7 +117,7 @@ _share = by_variation(
 
 
 @fast
-def in_shares(body: Body, pressed: float, mu: Any) -> Any:
+def in_shares(body: BodyNumbers, pressed: float, mu: Any) -> Any:
     """Friction in shares of the mean normal load, from its coefficient."""
     return _share(body, pressed) * mu
 

@@ -33,7 +33,7 @@ from frictionlab.methods.march.lap import (
 )
 from frictionlab.numerics.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart
 from frictionlab.orbit.recorder import Track, track_of
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST, TOO_STIFF = range(8)
 """Verdicts on a march: it repeats; nears no orbit any more; has used up its laps; is not finite; rests in the spring;
@@ -83,14 +83,14 @@ class MarchHistory(NamedTuple):
 
 
 @inner
-def _fill_node(body: Body, belt_speed: float, tau: float, grid: Any, j: int) -> None:
+def _fill_node(body: BodyNumbers, belt_speed: float, tau: float, grid: Any, j: int) -> None:
     now = instant_at(body, tau)
     grid[COLUMNS * j + LOAD] = load(body, now)
     grid[COLUMNS * j + NORMAL_LOAD] = normal_load(body, now)
     grid[COLUMNS * j + BELT] = belt_velocity(body, belt_speed, now)
 
 
-def _grid_of_half_steps(body: Body, settings: MarchSettings, x: Any) -> Any:
+def _grid_of_half_steps(body: BodyNumbers, settings: MarchSettings, x: Any) -> Any:
     steps = settings.steps
     grid = np.full(COLUMNS * (2 * steps + 1), 0.0 * x)
     for j in range(2 * steps + 1):
@@ -98,7 +98,7 @@ def _grid_of_half_steps(body: Body, settings: MarchSettings, x: Any) -> Any:
     return grid
 
 
-def _grid_of_pieces(body: Body, settings: MarchSettings, x: Any) -> Any:
+def _grid_of_pieces(body: BodyNumbers, settings: MarchSettings, x: Any) -> Any:
     gridded, total = settings.steps > 1, 1
     for k in range(pieces_of(body) if gridded else 0):
         begin, end = piece_ends(body, k)
@@ -151,7 +151,7 @@ def keep_state(laps: LapsMarched, n: int, x: Any, v: Any, problem: MarchProblem)
 
 
 @inner
-def gap_after(laps: LapsMarched, n: int, body: Body, settings: MarchSettings) -> float:
+def gap_after(laps: LapsMarched, n: int, body: BodyNumbers, settings: MarchSettings) -> float:
     """How far the state after n laps is from that a stride earlier, in the energy norm."""
     before = n - settings.stride
     gap = squared(body, laps.x[n] - laps.x[before], laps.v[n] - laps.v[before])
@@ -188,7 +188,7 @@ def distance_left(gaps: Any, n: int, settings: MarchSettings, floor: float) -> f
 
 
 @inner
-def has_stalled(body: Body, laps: LapsMarched, n: int, settings: MarchSettings) -> bool:
+def has_stalled(body: BodyNumbers, laps: LapsMarched, n: int, settings: MarchSettings) -> bool:
     """Whether the gaps have stopped to shrink, and lead nowhere: a slow drift towards the orbit is no stall."""
     half = settings.window * settings.stride
     if n < 2 * half + settings.stride:
@@ -209,7 +209,7 @@ def sticks_all_along(settings: MarchSettings, lap: Lap) -> bool:
 
 
 @inner
-def verdict_on_lap(body: Body, settings: MarchSettings, lap: Lap) -> int:
+def verdict_on_lap(body: BodyNumbers, settings: MarchSettings, lap: Lap) -> int:
     """The verdict where the last lap alone decides; LATE where it went well."""
     if lap.trace.met > settings.fastest:
         return TOO_FAST
@@ -224,7 +224,7 @@ def verdict_on_lap(body: Body, settings: MarchSettings, lap: Lap) -> int:
 
 @inner
 def progress_after(
-    progress: MarchProgress, body: Body, settings: MarchSettings, laps: LapsMarched, lap: Lap
+    progress: MarchProgress, body: BodyNumbers, settings: MarchSettings, laps: LapsMarched, lap: Lap
 ) -> MarchProgress:
     """The progress with one more lap, which is written down already."""
     n, steps, verdict = progress.laps + 1, progress.steps + lap.steps, verdict_on_lap(body, settings, lap)
@@ -250,7 +250,7 @@ def progress_after(
 
 
 @inner
-def path_stuck(law: Any, body: Body, settings: MarchSettings, lap: Lap) -> float:
+def path_stuck(law: Any, body: BodyNumbers, settings: MarchSettings, lap: Lap) -> float:
     """How far the belt carries a mass that stuck for a whole lap, by as many laps at once as it surely sticks."""
     if settings.stride > 1 or not (lap.returned and sticks_all_along(settings, lap)):
         return 0.0
@@ -266,7 +266,7 @@ def path_stuck(law: Any, body: Body, settings: MarchSettings, lap: Lap) -> float
 
 @inner
 def march_laps(
-    law: Any, body: Body, stepper: Any, settings: MarchSettings, start: MarchState
+    law: Any, body: BodyNumbers, stepper: Any, settings: MarchSettings, start: MarchState
 ) -> MarchHistory:
     """From a state lap by lap, until it repeats, stalls, or the laps are used up."""
     # What acts and what is remembered are bare pointers to steppers: the first to an array kept until the end, the

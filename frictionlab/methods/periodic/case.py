@@ -6,20 +6,20 @@ from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.dynamics.motion import in_piece
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 class Case(NamedTuple):
     """A law and a body on a belt; ``like`` is a zero of the kind of its positions, float or complex."""
 
     law: Any
-    body: Body
+    body: BodyNumbers
     belt_speed: float
     like: Any
 
 
 @inner
-def case_of(law: Any, body: Body, belt_speed: float) -> Case:
+def case_of(law: Any, body: BodyNumbers, belt_speed: float) -> Case:
     """The case of a body, whose own numbers tell whether it moves on a line or in the plane."""
     return Case(law, body, belt_speed, body.reference_sine - body.reference_sine)
 

@@ -11,11 +11,11 @@ from frictionlab.compile.decorators import inner
 from frictionlab.dynamics.motion import belt_swing, span
 from frictionlab.numerics.linalg import invert
 from frictionlab.numerics.vectors import dimension
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 @inner
-def first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
+def first_guess(law: Any, body: BodyNumbers, belt_speed: float, z: Any) -> float:
     """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
     swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
         body
@@ -56,7 +56,7 @@ def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, 
 
 
 @inner
-def free_inverse(body: Body, rubbing: float, inverse: Any, like: Any) -> None:
+def free_inverse(body: BodyNumbers, rubbing: float, inverse: Any, like: Any) -> None:
     """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
     n, d = inverse.shape[0], dimension(like)
     period = span(body)

@@ -27,7 +27,7 @@ from frictionlab.methods.periodic.fixed_point import (
 from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
 from frictionlab.methods.periodic.setting import scales_on
 from frictionlab.numerics.linalg import copy, multiply, norm
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 MOST_LANE_MAPS = 12
 FINER_IN_LANES = 4.0
@@ -132,7 +132,7 @@ def _interpolate(curve: LaneCurve, places: Any, count: int, i: int, z: Any) -> N
 
 
 @inner
-def _guess(law: Any, body: Body, curve: LaneCurve, i: int, z: Any) -> None:
+def _guess(law: Any, body: BodyNumbers, curve: LaneCurve, i: int, z: Any) -> None:
     """Write a guess of the state at i and of its inverse."""
     places = np.empty(2 * BESIDE, np.int64)
     count = _beside(curve.fate, i, places)
@@ -147,7 +147,9 @@ def _guess(law: Any, body: Body, curve: LaneCurve, i: int, z: Any) -> None:
 
 
 @inner
-def _judged(body: Body, goal: Goal, curve: LaneCurve, group: Group, k: int, now: GroupProgress) -> bool:
+def _judged(
+    body: BodyNumbers, goal: Goal, curve: LaneCurve, group: Group, k: int, now: GroupProgress
+) -> bool:
     """Look at the map of lane k: keep its orbit, leave it, or move its state; whether it goes on."""
     i, rows, fresh, step, before = group.places[k], group.rows, group.fresh[k], group.step[k], group.before[k]
     inverse = curve.inverses[i]
@@ -215,7 +217,7 @@ def _expected(curve: LaneCurve, i: int) -> float:
 
 
 @inner
-def _close_group(law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Group, count: int) -> None:
+def _close_group(law: Any, body: BodyNumbers, goal: Goal, curve: LaneCurve, group: Group, count: int) -> None:
     """Close the orbits of the first ``count`` places."""
     floor, expected = 0.0, 0.0
     for k in range(count):
@@ -252,7 +254,7 @@ def _first_places(n: int, lanes: int, places: Any) -> int:
 
 
 @inner
-def answer_lanes(law: Any, body: Body, belt_speeds: Any, goal: Goal) -> LaneCurve:
+def answer_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, goal: Goal) -> LaneCurve:
     """Close the orbits of planar slip that never comes next to rest, of a law whose motions converge."""
     n = belt_speeds.size
     lanes = room_for(n)

@@ -19,7 +19,7 @@ from frictionlab.dynamics.step_size import growth_of, longest_step
 from frictionlab.methods.periodic.maps.sliding import Node, near_rest, node_at, step, step_towards_rest
 from frictionlab.methods.periodic.period_map import planar_coordinates, unpack
 from frictionlab.numerics.steppers.dop853 import State
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 MOST_STEPS_IN_LANES = 3_000
 
@@ -95,7 +95,7 @@ class LaneLimits(NamedTuple):
 
 
 @inner
-def limits_of(law: Any, body: Body, accuracy: float, alike: bool) -> LaneLimits:
+def limits_of(law: Any, body: BodyNumbers, accuracy: float, alike: bool) -> LaneLimits:
     """Those of a map over the span of the body."""
     coefficient = law.sliding_friction(0.0)
     friction = normal_load(body, START) * coefficient
@@ -104,7 +104,7 @@ def limits_of(law: Any, body: Body, accuracy: float, alike: bool) -> LaneLimits:
 
 
 @inner
-def begin_lanes(law: Any, body: Body, rows: LaneRows, longest: float) -> LaneWay:
+def begin_lanes(law: Any, body: BodyNumbers, rows: LaneRows, longest: float) -> LaneWay:
     """At tau = 0, from the states of the rows; every lane has an anchor of its own."""
     belt_speed, z = read_lanes(rows.belt_speed), rows.state
     zero = 0.0 * belt_speed
@@ -168,7 +168,7 @@ def write_ends(way: LaneWay, limits: LaneLimits, rows: LaneRows) -> None:
 
 @over_lanes
 @inner
-def lane_map(law: Any, body: Body, rows: LaneRows, accuracy: float, alike: bool) -> int:
+def lane_map(law: Any, body: BodyNumbers, rows: LaneRows, accuracy: float, alike: bool) -> int:
     """One span of the body from the states of the rows; accuracy is each step's, in the norm of energy.
 
     alike: as in ``LaneLimits``. Returns the number of steps that the slowest lane took.

@@ -16,7 +16,7 @@ from frictionlab.compile.lane_arrays import room_for
 from frictionlab.dynamics.motion import belt_advance
 from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
 from frictionlab.numerics.linalg import norm
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 LANES_OF_AN_ORBIT = 8
 SHIFT = 1e-6
@@ -47,7 +47,7 @@ def _write_monodromy(rows: LaneRows, shift: float, first: int, matrix: Any) -> N
 
 
 @inner
-def differentiate_in_lanes(law: Any, body: Body, belt_speeds: Any, states: Any) -> Any:
+def differentiate_in_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, states: Any) -> Any:
     """The monodromies of these orbits [n, 4, 4]; NaN where they come next to rest."""
     n = belt_speeds.size
     matrices, lanes = np.empty((n, 4, 4)), room_for(LANES_OF_AN_ORBIT * n)

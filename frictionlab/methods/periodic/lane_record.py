@@ -25,7 +25,7 @@ from frictionlab.methods.periodic.lane_map import (
 from frictionlab.methods.periodic.maps.sliding import dense, motion_in_slip
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.recorder import Track, grown, track_of
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 MOST_RECORDED = 600
 """Steps of an orbit; one that needs more is recorded by itself."""
@@ -54,7 +54,7 @@ def _note(before: LaneWay, after: LaneWay, nodes: Any) -> None:
 
 @over_lanes
 @inner
-def _recorded(law: Any, body: Body, rows: LaneRows, accuracy: float, nodes: Any, stepped: Any) -> int:
+def _recorded(law: Any, body: BodyNumbers, rows: LaneRows, accuracy: float, nodes: Any, stepped: Any) -> int:
     """As ``lane_map``, its steps written down; stepped [steps, lanes]: 1 where a lane took this step."""
     limits = limits_of(law, body, accuracy, False)
     way, steps = begin_lanes(law, body, rows, limits.longest), 0
@@ -94,7 +94,7 @@ run_as(_write_panel, _write_panel_in_python)
 
 
 @inner
-def record_in_lanes(law: Any, body: Body, belt_speeds: Any, states: Any, accuracy: float) -> Any:
+def record_in_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, states: Any, accuracy: float) -> Any:
     """The track of these orbits, one after another, and the panels before which each ends [n].
 
     Of an orbit that lanes leave there are no panels.

@@ -42,7 +42,7 @@ from frictionlab.methods.periodic.period_map import pack, unpack
 from frictionlab.methods.periodic.plateau import plateau
 from frictionlab.numerics.linalg import copy, multiply, norm
 from frictionlab.orbit.recorder import Track, grown, track_of
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 MOST_POLAR_MAPS = 60
 MOST_MOVES = 4
@@ -381,7 +381,9 @@ def _recorded(case: Case, search: Search, state: Any, track: Track) -> Track:
 
 
 @inner
-def answer_near_rest(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted) -> Curve:
+def answer_near_rest(
+    law: Any, body: BodyNumbers, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted
+) -> Curve:
     """As ``answer_curve``, each scene by itself; guess: the states of all orbits where nothing is to be closed."""
     n, search = belt_speeds.size, _search_room()
     states, results = np.zeros((n, DIRECTIONS)), np.ones((n, COLUMNS))

@@ -30,28 +30,28 @@ from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
 from frictionlab.numerics.vectors import dimension
 from frictionlab.orbit.recorder import track_of
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
-def _pack_line(body: Body, state: Any, y: float, u: float) -> None:
+def _pack_line(body: BodyNumbers, state: Any, y: float, u: float) -> None:
     state[0], state[1] = math.sqrt(body.stiffness_mean) * y, u
 
 
 @inner
-def planar_coordinates(body: Body, y: Any, u: Any) -> Any:
+def planar_coordinates(body: BodyNumbers, y: Any, u: Any) -> Any:
     """A planar position and velocity in the norm of energy."""
     along, across = body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split
     return math.sqrt(along) * y.real, u.real, math.sqrt(across) * y.imag, u.imag
 
 
-def _pack_plane(body: Body, state: Any, y: complex, u: complex) -> None:
+def _pack_plane(body: BodyNumbers, state: Any, y: complex, u: complex) -> None:
     state[0], state[1], state[2], state[3] = planar_coordinates(body, y, u)
 
 
 pack = by_dimension(_pack_line, _pack_plane)
 
 
-def _unpack_plane(body: Body, state: Any, like: complex) -> Any:
+def _unpack_plane(body: BodyNumbers, state: Any, like: complex) -> Any:
     y = complex(
         state[0] / math.sqrt(body.stiffness_mean + body.stiffness_split),
         state[2] / math.sqrt(body.stiffness_mean - body.stiffness_split),
@@ -75,11 +75,11 @@ coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
 
 
-def _no_grain(law: Any, body: Body, like: Any) -> Any:
+def _no_grain(law: Any, body: BodyNumbers, like: Any) -> Any:
     return 0.0, 0.0
 
 
-def _grain_of_memory(law: Any, body: Body, like: Any) -> Any:
+def _grain_of_memory(law: Any, body: BodyNumbers, like: Any) -> Any:
     """A yield within a step, or the sum of all steps' errors."""
     work, most = workspace(law, like, contact_kind(body)), 0.0
     measure_scales(law, body, work, like)
@@ -146,7 +146,7 @@ def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
     return paced_image(case, state, residual, noting(accuracy, track_of(0)))
 
 
-def _rest_with_a_bristle(law: Any, body: Body, belt_speed: float, y: Any) -> float:
+def _rest_with_a_bristle(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> float:
     """A bristle is never quite at rest."""
     return 1.0
 
@@ -160,14 +160,14 @@ rest_of = by_law(
 """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
 
 
-def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
+def _remember_a_deflection(law: Any, body: BodyNumbers, state: Any, z: Any) -> None:
     work = workspace(law, z, contact_kind(body))
     measure_scales(law, body, work, z)
     work.start[MEMORY] = z
     pack_memory(law, body, work, state, z)
 
 
-def _remember_sliding(law: Any, body: Body, state: Any, z: Any) -> None:
+def _remember_sliding(law: Any, body: BodyNumbers, state: Any, z: Any) -> None:
     """The memory of steady sliding at slip velocity z."""
     work = workspace(law, z, contact_kind(body))
     measure_scales(law, body, work, z)
@@ -185,7 +185,7 @@ remember = by_law(
 
 
 @inner
-def start_of(law: Any, body: Body, state: Any, x: Any, v: Any, z: Any) -> None:
+def start_of(law: Any, body: BodyNumbers, state: Any, x: Any, v: Any, z: Any) -> None:
     """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z.
 
     With another memory, z is the velocity of steady sliding that it remembers.

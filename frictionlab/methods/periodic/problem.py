@@ -48,7 +48,7 @@ from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.record import Orbits
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, for_kernels, in_the_plane, on_the_line
+from frictionlab.scene.body import BodyNumbers, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
@@ -106,7 +106,7 @@ class PeriodicProblem:
         self.kernel: Any = answer_curve
         self.falls_slowly = falls_slowly(scene, law)
         check_attraction = law.count() > 0 and self.falls_slowly
-        self.body: Body
+        self.body: BodyNumbers
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
             self.body, self.like = on_the_line(self.mass), 0.0

@@ -41,7 +41,7 @@ from frictionlab.methods.periodic.period_map import (
 from frictionlab.methods.periodic.steady_sliding import ends_sliding, write_sliding
 from frictionlab.numerics.vectors import dimension
 from frictionlab.orbit.recorder import Track, track_of
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 class SpanImage(NamedTuple):
@@ -114,7 +114,7 @@ class Setting(NamedTuple):
 
 
 @inner
-def scales_on(body: Body) -> Scales:
+def scales_on(body: BodyNumbers) -> Scales:
     """Over the span of the body."""
     return Scales(span(body), body.damping_mean + body.damping_split, body.normal_load)
 
@@ -126,7 +126,7 @@ class LawOnBody(NamedTuple):
     """What the maps of a scene are compiled for."""
 
     law: Any
-    body: Body
+    body: BodyNumbers
 
 
 _of_kind = by_dimension(lambda value, like: value.real, lambda value, like: value)
@@ -134,7 +134,7 @@ _of_kind = by_dimension(lambda value, like: value.real, lambda value, like: valu
 
 
 @inner
-def _over(body: Body, periods: float) -> Body:
+def _over(body: BodyNumbers, periods: float) -> BodyNumbers:
     """The body, its map spanning so many periods."""
     return changed(body, periods, body.varying)
 
@@ -233,7 +233,7 @@ _has_memory = by_law(lambda law: False, _remembers, None, _remembers)
 
 
 @inner
-def maps_of(law: Any, body: Body) -> Any:
+def maps_of(law: Any, body: BodyNumbers) -> Any:
     """The law and the body where they lie, and their maps."""
     on = LawOnBody(law, bare(body))
     like = case_of(law, body, 0.0).like

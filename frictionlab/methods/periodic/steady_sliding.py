@@ -21,7 +21,7 @@ from frictionlab.methods.periodic.maps.memory_state import measure_scales, unpac
 from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.period_map import start_of, unpack
 from frictionlab.numerics.linalg import norm, subtract
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 NEAR = 1e-3
 """Of the size of a state: how near to an orbit that attracts a motion must come to be said to end there."""
@@ -30,7 +30,7 @@ GRAZING = 1e-5
 
 
 @inner
-def state_of_sliding(body: Body, friction: float, like: Any) -> Any:
+def state_of_sliding(body: BodyNumbers, friction: float, like: Any) -> Any:
     """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
     shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
     return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
@@ -59,7 +59,7 @@ def write_sliding(case: Case, state: Any) -> float:
 
 
 @inner
-def _impulse_response(body: Body) -> float:
+def _impulse_response(body: BodyNumbers) -> float:
     """The integral of the size of the position's response to an impulse."""
     stiffness, half = (
         body.stiffness_mean + body.stiffness_split,

@@ -26,7 +26,7 @@ from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, Motion
+from frictionlab.scene.body import BodyNumbers, Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.varying import packed
 from frictionlab.theory.rest import friction_at_rest
@@ -125,7 +125,7 @@ class MemoryPoint:
         return Orbit(tau, x, v, friction, stick) if self.slip is None else self.slip.orbit(tau, friction)
 
 
-def driven(motion: Motion, like: complex) -> Body:
+def driven(motion: Motion, like: complex) -> BodyNumbers:
     """A body that does what is prescribed; its spring and dashpot only tell a state's units.
 
     A sine is its reference motion. Of any other slip the body stays where it is, and the belt goes the other way.
@@ -135,7 +135,7 @@ def driven(motion: Motion, like: complex) -> Body:
     sine = share * complex(motion.velocity.imag, across.imag)
     cosine = -share * complex(motion.velocity.real, across.real)
     parts: Any = (sine, cosine, 0j) if isinstance(like, complex) else (sine.real, cosine.real, 0.0)
-    return Body(
+    return BodyNumbers(
         damping_mean=2.0,
         damping_split=0.0,
         stiffness_mean=1.0,

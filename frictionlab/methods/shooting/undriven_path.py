@@ -20,7 +20,7 @@ from frictionlab.methods.periodic.period_map import size_of, start_of
 from frictionlab.methods.periodic.setting import Maps, Setting, maps_of, recorded_map
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, Mass, on_the_line
+from frictionlab.scene.body import BodyNumbers, Mass, on_the_line
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.sliding_stability import steady_deflection
@@ -124,7 +124,7 @@ class UndrivenPath:
         return math.copysign(1.0, self.speed)
 
     @cached_property
-    def _body(self) -> Body:
+    def _body(self) -> BodyNumbers:
         return on_the_line(self.mass)
 
     @cached_property

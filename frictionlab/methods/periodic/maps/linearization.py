@@ -45,7 +45,7 @@ from frictionlab.methods.periodic.maps.rates import (
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, from_columns, keep, multiple
 from frictionlab.numerics.vectors import dimension, unit
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 NUDGE = 1e-5
 """Of a deflection in steady sliding, of a scalar or of a creeping slip, for a difference quotient."""
@@ -245,7 +245,7 @@ _by_memory = by_law(_bristle, _bristle, None, _deflection, _scalar)
 
 
 @inner
-def _swell(body: Body, now: Instant) -> float:
+def _swell(body: BodyNumbers, now: Instant) -> float:
     """Rate of the normal load by which friction moves the mass."""
     return 0.0 if body.prescribed else normal_load_rate(body, now)
 

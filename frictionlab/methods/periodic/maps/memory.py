@@ -57,13 +57,13 @@ from frictionlab.methods.periodic.maps.rates import (
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS, Mapped
 from frictionlab.methods.periodic.maps.step import bend, step, within_step
 from frictionlab.orbit.recorder import panel_writer
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 COARSEST = 1e-4
 """Of a step, per unit of friction impulse in a radian: what is coarser jumps over reversals."""
 
 
-def _at_rest(law: Any, body: Body) -> float:
+def _at_rest(law: Any, body: BodyNumbers) -> float:
     return law.sliding_friction(0.0)
 
 
@@ -72,7 +72,7 @@ usual_friction = by_law(_at_rest, _at_rest, None, lambda law, body: law.sliding_
 
 
 @inner
-def coarsest(law: Any, body: Body) -> float:
+def coarsest(law: Any, body: BodyNumbers) -> float:
     """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
     return COARSEST * body.normal_load * usual_friction(law, body) / quickest_of(body)
 

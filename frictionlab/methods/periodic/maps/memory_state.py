@@ -20,7 +20,7 @@ from frictionlab.dynamics.motion import swing_of
 from frictionlab.methods.periodic.maps.rates import FOLLOWS, MEMORY, YIELDS, Work, as_memory, remembers_stick
 from frictionlab.methods.periodic.maps.yield_surface import measure_yield
 from frictionlab.numerics.vectors import dimension, put, taken
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 _by_direction = by_dimension(
     lambda law, like: np.zeros(law.count()), lambda law, like: np.zeros(law.count(), np.complex128)
@@ -33,7 +33,7 @@ memory_of = by_scalars(lambda law, like: _by_direction(law, like), lambda law, l
 # --- scales ---------------------------------------------------------------------------------------------------------
 
 
-def _measure_bristle(law: Any, body: Body, work: Work, like: Any) -> None:
+def _measure_bristle(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
     """The stiffness of the contact about the undeflected bristle."""
     size = law.largest_deflection()
     size = size if size < 1e300 else 1.0
@@ -42,7 +42,7 @@ def _measure_bristle(law: Any, body: Body, work: Work, like: Any) -> None:
 
 
 @inner
-def _effects(law: Any, body: Body, work: Work, like: Any) -> None:
+def _effects(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
     """Sizes in steady sliding as fast as the friction-free motion; into units, the slope of friction by each."""
     v, n = swing_of(body) + 0.0 * like, count_of(law)
     for k in range(n):
@@ -63,13 +63,13 @@ def _effects(law: Any, body: Body, work: Work, like: Any) -> None:
         work.unit[k] = max(slope, 1e-6 * most / work.size[k])
 
 
-def _measure_deflections(law: Any, body: Body, work: Work, like: Any) -> None:
+def _measure_deflections(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
     _effects(law, body, work, like)
     for k in range(count_of(law)):
         work.unit[k] = math.sqrt(body.normal_load * work.unit[k])
 
 
-def _measure_scalars(law: Any, body: Body, work: Work, like: Any) -> None:
+def _measure_scalars(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
     _effects(law, body, work, like)
     for k in range(count_of(law)):
         work.unit[k] = body.normal_load * work.unit[k] * work.size[k] / body.frequency
@@ -84,7 +84,7 @@ _measure_sizes = by_law(_measure_bristle, _measure_bristle, None, _measure_defle
 
 
 @inner
-def measure_scales(law: Any, body: Body, work: Work, like: Any) -> None:
+def measure_scales(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
     """Fill of each number its size in steady sliding, its unit in the norm of energy and where it yields."""
     _measure_sizes(law, body, work, like)
     measure_yield(law, work, like)
@@ -100,12 +100,12 @@ coordinates = by_scalars(
 
 
 @inner
-def _unit_of_stick(body: Body) -> float:
+def _unit_of_stick(body: BodyNumbers) -> float:
     """What a state has stick or slip multiplied by: no quotient shifts a state by half of that."""
     return 1.0 + swing_of(body) + body.normal_load
 
 
-def _pack_deflections(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+def _pack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
     d, n = dimension(like), count_of(law)
     for k in range(n):
         put(state, 2 + k, work.unit[k] * work.start[MEMORY + k])
@@ -114,7 +114,7 @@ def _pack_deflections(law: Any, body: Body, work: Work, state: Any, like: Any) -
             state[(2 + n) * d + k] = slips * _unit_of_stick(body)
 
 
-def _pack_scalars(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+def _pack_scalars(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
     first = 2 * dimension(like)
     for k in range(count_of(law)):
         value = as_memory(law, work.start[MEMORY + k])
@@ -141,7 +141,7 @@ def scalar_share(coordinate: float, positive: float) -> float:
     return math.exp(coordinate) if coordinate < 0.0 else 1.0 + coordinate
 
 
-def _unpack_deflections(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+def _unpack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
     d, n = dimension(like), count_of(law)
     for k in range(n):
         work.start[MEMORY + k] = taken(state, 2 + k, like) / work.unit[k]
@@ -150,7 +150,7 @@ def _unpack_deflections(law: Any, body: Body, work: Work, state: Any, like: Any)
             work.mode[k] = YIELDS if slips else FOLLOWS
 
 
-def _unpack_scalars(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+def _unpack_scalars(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
     first = 2 * dimension(like)
     for k in range(count_of(law)):
         share = scalar_share(state[first + k] / work.unit[k], work.positive[k])
@@ -204,7 +204,7 @@ cut_back = by_law(_leave, _leave, None, _cut_back, _leave)
 
 
 @inner
-def remember_sliding(law: Any, body: Body, work: Work, slip: Any) -> None:
+def remember_sliding(law: Any, body: BodyNumbers, work: Work, slip: Any) -> None:
     """The memory of steady sliding at a slip velocity; at rest no deflection, and scalars as in free motion."""
     v = slip if length(slip) > 0.0 else swing_of(body) + 0.0 * slip
     rests = length(slip) == 0.0 and law.turning > 0.0

@@ -33,7 +33,7 @@ from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keep_step
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
 from frictionlab.orbit.recorder import panel_writer
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 class LegStart(NamedTuple):
@@ -49,7 +49,7 @@ class Leg(NamedTuple):
     """Slip in one direction: what it began with, and sine and cosine at the anchor time."""
 
     law: Any
-    body: Body
+    body: BodyNumbers
     belt_speed: float
     side: float
     anchor: float
@@ -113,7 +113,7 @@ def _slid(leg: Leg, tau: float, y: float) -> float:
 
 
 @inner
-def share_of_the_way(law: Any, body: Body, accuracy: float) -> float:
+def share_of_the_way(law: Any, body: BodyNumbers, accuracy: float) -> float:
     """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
     impulse = body.normal_load * law.sliding_friction(0.0)
     return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)

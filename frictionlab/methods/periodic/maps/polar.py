@@ -43,7 +43,7 @@ from frictionlab.methods.periodic.maps.polar_step import (
 from frictionlab.methods.periodic.maps.sliding import Hop, note_hop, note_stick
 from frictionlab.methods.periodic.maps.stick import end_of_rest
 from frictionlab.orbit.recorder import Track, panel_writer
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 MOST_CORRECTIONS_A_MAP = 8_000
 """Of Newton's method in its steps, some hundredth of a second a thousand."""
@@ -103,19 +103,19 @@ def room_for_maps() -> Workspace:
 
 
 @inner
-def root_along(body: Body) -> float:
+def root_along(body: BodyNumbers) -> float:
     """The root of the stiffness along the belt: position to energy."""
     return math.sqrt(body.stiffness_mean + body.stiffness_split)
 
 
 @inner
-def root_across(body: Body) -> float:
+def root_across(body: BodyNumbers) -> float:
     """The same across the belt."""
     return math.sqrt(body.stiffness_mean - body.stiffness_split)
 
 
 @inner
-def quickest(body: Body) -> float:
+def quickest(body: BodyNumbers) -> float:
     """The largest rate of loads and body."""
     return max(body.frequency, math.sqrt(body.stiffness_mean + abs(body.stiffness_split)))
 

@@ -30,7 +30,7 @@ from frictionlab.dynamics.motion import (
     reference_velocity,
     unbalanced_load,
 )
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
 """Places of the mass: its deviation, the velocity of that (beside scalars: slip), the integral of friction in shares
@@ -150,7 +150,7 @@ remembers_stick = by_law(_never, _never, None, lambda law: law.remembers_stick()
 # state remembers, and what moves at z'/n - (n'/n) (z/n). The law is asked for z' and gives it n times too large.
 
 
-def _share_at(work: Work, body: Body, now: Instant) -> None:
+def _share_at(work: Work, body: BodyNumbers, now: Instant) -> None:
     mean = body.normal_load
     work.share[0] = load_share(body, now)
     work.share[1], work.share[2] = normal_load_rate(body, now) / mean, normal_load_bend(body, now) / mean
@@ -226,7 +226,7 @@ def friction_in_mode(law: Any, work: Work, w: Any) -> Any:
 
 
 @fast
-def load_on(body: Body, now: Instant) -> float:
+def load_on(body: BodyNumbers, now: Instant) -> float:
     """The normal load by which friction moves the mass: none where its motion is prescribed."""
     return 0.0 if body.prescribed else normal_load(body, now)
 

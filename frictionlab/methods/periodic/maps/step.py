@@ -30,7 +30,7 @@ from frictionlab.methods.periodic.maps.rates import (
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 SIMULTANEOUS = 6
 """From the stage before this one on, all are at the end of the step: its sine and cosine serve them all."""
@@ -125,7 +125,7 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
 square = by_dimension(lambda x: x * x, lambda x: x.real * x.real + x.imag * x.imag)
 
 
-def _elastic_in_the_plane(body: Body, x: complex) -> float:
+def _elastic_in_the_plane(body: BodyNumbers, x: complex) -> float:
     along, across = body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split
     return along * x.real * x.real + across * x.imag * x.imag
 

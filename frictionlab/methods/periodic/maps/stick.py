@@ -28,11 +28,11 @@ from frictionlab.dynamics.motion import (
     span,
 )
 from frictionlab.methods.periodic.case import Case
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import BodyNumbers
 
 
 @inner
-def _stick_end(law: Any, body: Body, belt_speed: float, tau: float, x: Any, end: float) -> float:
+def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: Any, end: float) -> float:
     """First time the held force reaches the limit, or end: what is left stays above a parabola that bounds it."""
     holds = law.static_friction()
     curvature = holding_curvature(body, belt_speed) + holds * normal_load_curvature(body)
@@ -58,7 +58,7 @@ def _stick_end(law: Any, body: Body, belt_speed: float, tau: float, x: Any, end:
 
 
 @inner
-def periods_at_rest(law: Any, body: Body, belt_speed: float, y: Any) -> float:
+def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> float:
     """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
     x, way, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
     last = _velocity_at(in_piece(body, pieces - 1), belt_speed, span(body))
@@ -74,12 +74,12 @@ def periods_at_rest(law: Any, body: Body, belt_speed: float, y: Any) -> float:
 
 
 @inner
-def _velocity_at(body: Body, belt_speed: float, tau: float) -> Any:
+def _velocity_at(body: BodyNumbers, belt_speed: float, tau: float) -> Any:
     return belt_velocity(body, belt_speed, instant_at(body, tau))
 
 
 @inner
-def _room_at_rest(law: Any, body: Body, belt_speed: float, x: Any, start: float, end: float) -> float:
+def _room_at_rest(law: Any, body: BodyNumbers, belt_speed: float, x: Any, start: float, end: float) -> float:
     """By how much static friction exceeds, all the time between two corners, what holds a mass at x at the first."""
     holds, period, room, samples = (
         law.static_friction(),

@@ -15,9 +15,10 @@ from scipy.stats import qmc
 from frictionlab.fitting.residuals import FIT_TOLERANCE
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
-from frictionlab.runner.api import curve
 from frictionlab.runner.arguments import given_law, given_scene, given_tolerance
+from frictionlab.runner.steady_state import steady_states
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
 
 DRAWN = 64
 """Experiments drawn over the ranges (Sobol's sequence)."""
@@ -106,8 +107,8 @@ def _means(pairs: Sequence[tuple[Scene, FrictionLaw]], names: Sequence[str], poi
     for scene, law in pairs:
         there = scene.with_(**{name: value for name, value in given.items() if name != BELT})
         speed = given.get(BELT, scene.belt_speed)
-        row = curve(there, law, [speed], "auto", FIT_TOLERANCE, columns=["mean_friction"], progress=False)
-        found.append(float(row["mean_friction"].iloc[0]))
+        answered = steady_states(Scenes(there, np.array([speed])), law, FIT_TOLERANCE, ["mean_friction"])
+        found.append(float(answered.numbers["mean_friction"][0]))
     return np.array(found)
 
 

@@ -14,7 +14,8 @@ from frictionlab.fitting.along_path import friction_along
 from frictionlab.fitting.free import Model
 from frictionlab.fitting.measured import Measurements
 from frictionlab.quantities import Floats
-from frictionlab.runner.api import curve
+from frictionlab.runner.steady_state import steady_states
+from frictionlab.scene.scenes import Scenes
 
 FIT_TOLERANCE = 1e-9
 """Asked of mean friction: far below what measurements tell, and below what difference quotients see."""
@@ -89,11 +90,9 @@ class Residuals:
         measured, found = self.measured, np.full(len(self.measured.values), math.nan)
         given = measured.table[measured.along].to_numpy(dtype=float)
         for changed, places in measured.groups:
-            here = scene.with_(**changed) if changed else scene
-            rows = curve(
-                here, law, given[places], "auto", FIT_TOLERANCE, columns=["mean_friction"], progress=False
-            )
-            found[places] = rows["mean_friction"].to_numpy(dtype=float)
-            known = rows["error"].dropna()
-            self.error = max(self.error, float(known.max()) if len(known) else 0.0)
+            different, back = np.unique(given[places], return_inverse=True)
+            here = Scenes(scene.with_(**changed) if changed else scene, different)
+            numbers = steady_states(here, law, FIT_TOLERANCE, ["mean_friction"]).numbers
+            found[places] = numbers["mean_friction"][back]
+            self.error = max(self.error, float(np.nan_to_num(numbers["error"]).max()))
         return found

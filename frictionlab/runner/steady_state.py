@@ -1,7 +1,8 @@
-"""One steady state from Python: solved on a thread of its own, without a table."""
+"""Steady states from Python, without a table."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 import numpy as np
@@ -10,12 +11,12 @@ from frictionlab.columns import ALL, RESULTS, selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.derived import si_columns, si_scales
-from frictionlab.results.part import Part
+from frictionlab.results.part import Part, one_part
 from frictionlab.results.sentences_in_si import in_si_words
 from frictionlab.results.state import OrbitOf, SteadyState
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.chunks import Chunk, Task
-from frictionlab.runner.solve import answer, parts
+from frictionlab.runner.solve import answer, parts, solve
 from frictionlab.runner.workers import within
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
@@ -47,6 +48,16 @@ def steady_state(
     words = {name: in_si_words(column[0], scales) for name, column in part.text.items()}
     motion = OrbitOf(piece.answers.orbit, scene, chunk.law)
     return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
+
+
+def steady_states(scenes: Scenes, law: FrictionLaw, tolerance: float, columns: Sequence[str]) -> Part:
+    """Of one law along belt speeds, which rise: for what asks hundreds of times, on its own thread.
+
+    Raises BrokenPlugin.
+    """
+    task = Task(tolerance, columns=selected(columns))
+    chunk = Chunk(np.arange(len(scenes)), scenes, law_in_scene(law, scenes.scene), given_method("auto"), task)
+    return one_part(solve(chunk), chunk.rows)
 
 
 def _in_si(part: Part, scene: Scene) -> dict[str, float]:

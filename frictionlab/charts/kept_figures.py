@@ -39,11 +39,11 @@ from frictionlab.units.shown import ShownUnit, in_shown_units
 MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
 MOST_IN_TIME = 4  # points with a picture of velocity and one of friction
 FRICTION_LABEL = "friction coefficient\nagainst the mass"
-PHASE = "x1", "v1"
+PHASE, IN_TIME = ("x1", "v1"), ("tau", "v1")
 KINDS = {
     "hysteresis": [("x1", "friction")],
     "phase": [PHASE],
-    "time_series": [("tau", "v1"), ("tau", "friction")],
+    "time_series": [IN_TIME, ("tau", "friction")],
 }
 """Of each figure what its pictures show of a point, along the axis and upwards."""
 HARMONIC = "harmonic"
@@ -55,6 +55,19 @@ AMPLITUDES = {
 }
 POINCARE: Any = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
 SPEED_LINE: Any = {"color": "0.45", "linewidth": 0.6}
+ACROSS_LINE: Any = {
+    "linestyle": (0, (1.2, 1.2)),
+    "marker": "o",
+    "markersize": 3.0,
+    "markevery": 0.05,
+    "markerfacecolor": "white",
+    "markeredgewidth": 0.8,
+    "zorder": 3,
+}
+"""Seen where it lies on the velocity along the belt, too."""
+LOAD_LINE: Any = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (6, 2))}
+LOAD_SHARE = 0.9
+"""Of the largest velocity of a picture: how high its load is drawn, which has a scale of its own."""
 FREQUENCIES = tuple(
     f"scene.{part}.frequency" for part in ("drive", "belt_vibration", "normal_load_variation", "slip")
 )
@@ -78,6 +91,16 @@ class DrawnOrbit(NamedTuple):
     def label(self, name: str) -> str:
         """That of an axis."""
         return FRICTION_LABEL if name == "friction" else word(self.shown(name))
+
+    @property
+    def moves_across(self) -> bool:
+        """Whether there is motion across the belt."""
+        return bool(self.column(self.shown("v2")).any())
+
+    @property
+    def load(self) -> CurveNumbers:
+        """What drives the mass along the belt."""
+        return self.column(self.shown("load"))
 
     @property
     def drive_period(self) -> float | None:
@@ -116,21 +139,32 @@ def orbit_figures(
         }
         points += [OrbitPicture(settings, list(loops.values())[::-1])] if loops else []
     total = sum(len(_values(family, panel)) for panel in family.panels)
-    drawn = {name: partial(_draw, points, kinds, total) for name, kinds in KINDS.items()}
+    swept = family.word(family.member) if family.member else None
+    drawn = {name: partial(_draw, points, kinds, total, swept) for name, kinds in KINDS.items()}
     return dict(drawn) if points else {}
 
 
 def _draw(
-    every: Sequence[OrbitPicture], kinds: Sequence[tuple[str, str]], total: int, heading: Heading
+    every: Sequence[OrbitPicture],
+    kinds: Sequence[tuple[str, str]],
+    total: int,
+    swept: str | None,
+    heading: Heading,
 ) -> Figure:
     points = _side_by_side(every) if len(kinds) == 1 else some_of(every, MOST_IN_TIME)
     pictures = [(point, kind) for point in points for kind in kinds]
-    entries = curve_entries(_looks(points), ["mean_friction"])
+    entries = [_without_marker(entry) for entry in curve_entries(_looks(points), ["mean_friction"])]
     if PHASE in kinds:
         look: Any = {"linestyle": "none", "color": "0.2", **POINCARE}
         entries.append(Line2D([], [], label="start of a drive period", **look))
         entries.append(Line2D([], [], label="belt speed", **SPEED_LINE))
-    sheet = Sheet.blank(len(pictures), heading, entries + part_told(len(points), total, "points"))
+    if IN_TIME in kinds:
+        shown = [loop for point in points for loop in point.loops]
+        if any(loop.moves_across for loop in shown):
+            entries.append(Line2D([], [], label="velocity across the belt", color="0.2", **ACROSS_LINE))
+        if any(loop.load.any() for loop in shown):
+            entries.append(Line2D([], [], label="load along the belt, not to scale", **LOAD_LINE))
+    sheet = Sheet.blank(len(pictures), heading, entries + part_told(len(points), total, "points"), swept)
     looks, titles = _looks(every), headings([point.settings for point, _ in pictures])
     drawn = [_draw_point(sheet.axes(at), *picture, looks) for at, picture in enumerate(pictures)]
     for axes, title in zip(drawn, titles, strict=True):
@@ -139,6 +173,13 @@ def _draw(
     scale_alike([axes for axes, (_, kind) in zip(drawn, pictures, strict=True) if kind[1] == "friction"])
     sheet.label_once(drawn)
     return sheet.figure
+
+
+def _without_marker(entry: Line2D) -> Line2D:
+    """The entry of a line as its curve is drawn here; one that is a marker alone stays."""
+    if entry.get_linestyle() != "None":
+        entry.set_marker("")
+    return entry
 
 
 def _side_by_side(points: Sequence[OrbitPicture]) -> list[OrbitPicture]:
@@ -154,8 +195,10 @@ def _looks(points: Sequence[OrbitPicture]) -> Looks:
 
 
 def _worth_drawing(family: Family, panel: tuple[SweptValue, ...], most: int) -> list[float]:
-    """Values along the axis of a panel: where slip reverses, the last of them where the body sticks."""
+    """Values along the axis of a panel: where slip reverses, the last of many where the body sticks."""
     values = _values(family, panel, "reversals") or _values(family, panel)
+    if len(values) <= most:
+        return values
     chosen = some_of(values, most + 2)[1:-1] or values[:1]
     sticking = _values(family, panel, "stick_fraction")
     if sticking and not set(sticking) & set(chosen):
@@ -207,11 +250,21 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
         if along == "tau" and loop.drive_period is not None:
             x, label = loop.column("tau") / loop.drive_period, "drive periods $\\Omega\\tau/2\\pi$"
         axes.plot(x, y, **looks.line(loop.curve) | {"marker": ""})
+        if kind == IN_TIME and loop.moves_across:
+            across = loop.column(loop.shown("v2"))
+            axes.plot(
+                x,
+                across,
+                **looks.line(loop.curve) | ACROSS_LINE | {"markeredgecolor": looks.color(loop.curve)},
+            )
         axes.set(xlabel=label, ylabel=loop.label(upwards))
         if kind == PHASE and (period := loop.drive_period) is not None:
             tau = loop.column("tau")[:-1]
             at = np.searchsorted(tau, np.arange(0.0, tau[-1] + 1e-9, period) - 1e-9 * period)
             axes.plot(x[at], y[at], ls="none", color=looks.color(loop.curve), zorder=4, **POINCARE)
+    if kind == IN_TIME and (load := point.loops[0].load).any():
+        highest = max(np.abs(axes.dataLim.get_points()[:, 1]))
+        axes.plot(x, LOAD_SHARE * highest / np.abs(load).max() * load, zorder=0, **LOAD_LINE)
     if kind == PHASE:
         row = point.loops[0].row
         axes.axhline(float(row[belt_speed(row.index)]), zorder=0, **SPEED_LINE)

@@ -33,11 +33,17 @@ def orbits_of(rows: Sequence[int], periods: int = 2) -> pd.DataFrame:
     tau = np.linspace(0.0, periods * 2.0 * np.pi / OMEGA, SAMPLES, endpoint=False)
     size = 1.0 + 0.5 * np.sin(0.5 * OMEGA * tau)
     circle = pd.DataFrame({"tau": tau, "x1": size * np.cos(OMEGA * tau), "v1": size * np.sin(OMEGA * tau)})
-    return pd.concat([circle.mul([1.0, row + 1, row + 1]).assign(row=row, friction=0.4) for row in rows])
+    rest = {"v2": 0.0, "load": 0.0, "friction": 0.4}
+    return pd.concat([circle.mul([1.0, row + 1, row + 1]).assign(row=row, **rest) for row in rows])
 
 
-def of_orbits(name: str, table: pd.DataFrame = TABLE, harmonics: pd.DataFrame | None = None) -> Figure:
-    return drawn(table, name, kept=Kept(orbits_of, harmonics))
+def of_orbits(
+    name: str,
+    table: pd.DataFrame = TABLE,
+    harmonics: pd.DataFrame | None = None,
+    orbits: Callable[[Sequence[int]], pd.DataFrame] = orbits_of,
+) -> Figure:
+    return drawn(table, name, kept=Kept(orbits, harmonics))
 
 
 def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
@@ -91,6 +97,27 @@ def test_time_runs_in_drive_periods_and_constant_friction_is_level() -> None:
 
     assert velocity.lines[0].get_xdata()[-1] == pytest.approx(2.0)
     assert np.ptp(friction.lines[0].get_ydata()) == 0.0
+
+
+def test_beside_the_velocity_are_that_across_the_belt_and_the_load() -> None:
+    def planar(rows: Sequence[int]) -> pd.DataFrame:
+        found = orbits_of(rows)
+        return found.assign(v2=-0.5 * found["v1"], load=7.0 * found["v1"])
+
+    figure = of_orbits("time_series", orbits=planar)
+    along, across, *_, load = figure.axes[0].lines
+
+    np.testing.assert_allclose(across.get_ydata(), -0.5 * np.asarray(along.get_ydata()))
+    highest = max(np.abs(line.get_ydata()).max() for line in figure.axes[0].lines[:-1])
+    assert np.abs(load.get_ydata()).max() == pytest.approx(0.9 * highest)
+    assert {"velocity across the belt", "load along the belt, not to scale"} <= set(legend_of(figure))
+    assert len(of_orbits("time_series").axes[0].lines) == 2  # of two laws, where neither is
+
+
+def test_of_few_points_all_are_drawn() -> None:
+    three = TABLE[TABLE["scene.belt_speed"].isin([2.0, 3.0, 4.0])].reset_index(drop=True)
+
+    assert len(titles_of(of_orbits("hysteresis", three))) == 3
 
 
 def test_without_orbits_there_are_no_such_figures() -> None:

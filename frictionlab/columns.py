@@ -99,7 +99,7 @@ COLUMNS: tuple[Column, ...] = (
            "ratios", "inputs", "relative belt speed", r"v_b/V_\mathrm{lin}"),
     Column("friction_to_drive", "friction coefficient * normal_load / force amplitude", "ratios", "inputs"),
     Column("presliding_ratio", "presliding length * frequency / V_lin", "ratios", "inputs"),
-    Column("model", "the method that computed the number, and for auto the reason for its choice", "answer",
+    Column("model", "what computed the number, in the words listed below, and for auto why it was chosen", "answer",
            is_text=True),
     Column("seconds", "kernel time", "answer"),
 )  # fmt: skip

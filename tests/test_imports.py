@@ -39,22 +39,24 @@ ARROWS = {
         "numerics": "compile quantities",
         "theory": "laws quantities scene",
         "shape": "laws quantities",
+        "methods.words": "",
         "methods.base": "laws orbit quantities scene",
         "methods.under_way": "compile laws",
         "methods.periodic": (
-            "compile dynamics laws methods.under_way numerics orbit quantities scene theory"
+            "compile dynamics laws methods.under_way numerics orbit quantities scene theory methods.words"
         ),
         "methods.prescribed": (
             "compile dynamics laws orbit quantities scene theory methods.base methods.periodic "
-            "methods.under_way"
+            "methods.under_way methods.words"
         ),
         "methods.shooting": (
             "compile dynamics laws orbit quantities scene theory methods.base methods.periodic "
-            "methods.prescribed methods.under_way"
+            "methods.prescribed methods.under_way methods.words"
         ),
         "methods.refusals": "laws methods.shooting scene",
         "methods.exact": (
-            "compile laws orbit quantities scene theory methods.base methods.prescribed methods.refusals"
+            "compile laws orbit quantities scene theory methods.base methods.prescribed methods.refusals "
+            "methods.words"
         ),
         "methods.march": (
             "compile dynamics laws numerics orbit quantities scene theory methods.base methods.periodic "
@@ -62,9 +64,9 @@ ARROWS = {
         ),
         "methods.reduced": (
             "compile dynamics laws numerics orbit quantities scene theory methods.base methods.exact "
-            "methods.prescribed methods.refusals methods.shooting"
+            "methods.prescribed methods.refusals methods.shooting methods.words"
         ),
-        "methods.auto": "laws methods.base methods.exact methods.shooting orbit scene",
+        "methods.auto": "laws methods.base methods.exact methods.shooting orbit scene methods.words",
         "onsets": "laws methods.base methods.periodic orbit quantities scene theory",
         "registry": "faults laws methods.base mistakes",
         "study": "columns laws methods.base mistakes printable quantities registry scene units",
@@ -78,7 +80,7 @@ ARROWS = {
         "response": (
             "charts laws methods.prescribed orbit quantities results runner scene sensitivity theory"
         ),
-        "report": "charts columns printable quantities registry results runner scene study units",
+        "report": "charts columns printable quantities registry results runner scene study units methods.words",
         "fitting": (
             "charts columns compile dynamics faults laws mistakes printable quantities "
             "report runner scene study theory"
@@ -97,7 +99,7 @@ ARROWS = {
         ),
         "cli": (
             "bench charts columns explore faults fitting least_model mistakes printable registry report results "
-            "runner scaffold study testing units"
+            "runner scaffold study testing units methods.words"
         ),
     }.items()
 }

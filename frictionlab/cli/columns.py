@@ -38,6 +38,7 @@ def columns_command(as_json: bool) -> None:
 def _lines() -> list[str]:
     """A heading a group, a line a column; * before the default ones."""
     from frictionlab.columns import ALWAYS, COLUMNS, DEFAULT, GROUPS, columns_of
+    from frictionlab.methods.words import ModelWord
 
     lines = [
         "* found where no columns are asked for, and left out where no row has them",
@@ -52,7 +53,15 @@ def _lines() -> list[str]:
             lines += textwrap.wrap(
                 f"with {', '.join(names)}", WIDEST_LINE, initial_indent="    ", subsequent_indent="    "
             )
-    return lines
+    lines += ["", "words of the column model"]
+    return lines + [_line_of_word(each) for each in ModelWord]
+
+
+def _line_of_word(each: Any) -> str:
+    indent = " " * 30
+    return textwrap.fill(
+        each.sentence, WIDEST_LINE, initial_indent=f"    {each:<26}", subsequent_indent=indent
+    )
 
 
 def _line(each: Any, default: tuple[str, ...]) -> str:

@@ -13,6 +13,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import STATISTICAL, Answers, FoundState, Method
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.methods.words import AUTO, ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
@@ -45,7 +46,7 @@ class Auto(Method):
         for method in METHODS_BY_COST:
             reason = method.refusal(scene, law)
             if reason is None:
-                why = against[-1].split(";")[0] if against else "it accepts the scene"
+                why = against[-1].split(";")[0] if against else ModelWord.CHEAPEST.sentence
                 return method, f"cheapest method that applies: {why}"
             against.append(reason)
         return None, "; ".join(dict.fromkeys(part for reason in against for part in reason.split("; ")))
@@ -92,6 +93,7 @@ class Auto(Method):
                 reaches = f"reaches an error of {answers.error[i]:.1e}, above the tolerance {tolerance:.1e}"
                 told = re.search(r"above the tolerance[^:;]*(: [^;]+)", reason[i])
                 reason[i] = f"{method.name} {reaches}{told[1] if told else ''}"
-        named = {model: f"{model} (auto: {method.name}, {why})" for model in set(answers.model)}
+        word = next((str(each) for each in ModelWord if why.endswith(each.sentence)), why)
+        named = {model: f"{model}{AUTO}{method.name}, {word})" for model in set(answers.model)}
         model = [named[each] for each in answers.model]
         return replace(answers, status=status, reason=reason, model=model)

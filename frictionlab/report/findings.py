@@ -9,6 +9,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.columns import IN_SI_UNITS, RESULTS, SI, by_plain_names
+from frictionlab.methods.words import model_in_sentences, why_unique_in_words
 from frictionlab.printable import MOST_DIGITS, with_error
 from frictionlab.report.facts import Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
@@ -24,8 +25,8 @@ TOLD_ELSEWHERE = ("reason", "model")
 MOST_OF_A_POINT = 12
 """Digits of a number that is told with its error."""
 MOST_EXAMPLES = 3
-SAYS_TESTED, SAYS_PROVED = "tested: ", "unique: "
-"""How sentences on uniqueness begin, in ``reason`` and in ``model``."""
+SAYS_TESTED = "tested: "
+"""How a sentence on starts begins, in ``reason``."""
 
 VERDICTS = {
     True: Markup('<span class="good">passed</span>'),
@@ -142,17 +143,24 @@ def place_of(run: Facts, row: pd.Series) -> Markup:
 
 
 def models_grid(run: Facts) -> Grid:
-    """What produced the numbers, in the methods' own sentences, with how many points each produced."""
-    head = ["method", "model, and why", "points", "laws"]
+    """What produced the numbers: each model of the table, its sentence, and how many points it produced."""
+    head = ["method", "model", "what it is, and why", "points", "laws"]
     rows = _by_sentence(run.table, "method", run.table["model"])
-    return grid("What produced the numbers", head, rows, "models")
+    told = [
+        [method, model, "" if (said := model_in_sentences(model)) == model else said, *who]
+        for method, model, *who in rows
+    ]
+    return grid("What produced the numbers", head, told, "models")
 
 
 def uniqueness_grid(run: Facts) -> Grid:
-    """How it is known of points that no start ends elsewhere, in the methods' own sentences; by how many points."""
-    head = ["unique", "how it is known", "points", "laws"]
-    told = run.table["model"].where(run.table["unique"] == "proved", run.table["reason"])
-    how = each_once(told, _how_unique).mask(run.table["unique"] == "no", "other starts end elsewhere")
+    """How it is known of points that no start ends elsewhere, in sentences; by how many points."""
+    head, unique = ["unique", "how it is known", "points", "laws"], run.table["unique"]
+    proved, tested = (
+        each_once(run.table["model"].fillna(""), why_unique_in_words),
+        each_once(run.table["reason"], _how_tested),
+    )
+    how = proved.where(unique == "proved", tested).mask(unique == "no", "other starts end elsewhere")
     rows = _by_sentence(run.table, "unique", how)
     return grid("Whether every start ends there", head, rows, "kinds")
 
@@ -167,11 +175,11 @@ def _by_sentence(table: pd.DataFrame, by: str, sentences: pd.Series) -> list[lis
     ]
 
 
-def _how_unique(sentences: Any) -> str:
-    """Of the sentences of a model or a reason the one on uniqueness; nothing where there is none."""
-    parts = str(sentences).partition(" (auto: ")[0].split("; ")
+def _how_tested(reason: Any) -> str:
+    """Of the sentences of a reason the one on starts; nothing where there is none."""
     return next(
-        (part.partition(": ")[2] for part in parts if part.startswith((SAYS_TESTED, SAYS_PROVED))), ""
+        (each.removeprefix(SAYS_TESTED) for each in str(reason).split("; ") if each.startswith(SAYS_TESTED)),
+        "",
     )
 
 

@@ -15,7 +15,6 @@ TOLD: dict[str, tuple[str, str]] = {
     "up to (NUMBER) apart": ("length", "m"),
     "it is at x = (NUMBER) ": ("length", "m"),
     "with velocity (NUMBER)": ("velocity", "m/s"),
-    "V_lin = (NUMBER)": ("velocity", "m/s"),
     "end of reversal, (NUMBER)": ("velocity", "m/s"),
     "highest belt speed that has a number, (NUMBER)": ("velocity", "m/s"),
     "ends at belt speed (NUMBER)": ("velocity", "m/s"),

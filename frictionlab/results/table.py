@@ -187,9 +187,8 @@ class Results:
         shown = {name: column[rows] for name, column in columns.items() if column is not None}
         if given.scales is not None:
             scales = {name: values[rows] for name, values in given.scales.items()}
-            for name in ("reason", "model") if names is None else ():
-                if name in shown:
-                    shown[name] = np.array(column_in_si_words(shown[name], scales), dtype=object)
+            if "reason" in shown and names is None:
+                shown["reason"] = np.array(column_in_si_words(shown["reason"], scales), dtype=object)
         frame = pd.DataFrame(shown, copy=False)
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
             if name in given.columns and frame[name].isna().all():

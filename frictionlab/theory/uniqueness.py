@@ -22,9 +22,6 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
 
-NEVER_PART = "unique: dashpots damp and friction never falls with speed (Leine & van de Wouw, 2008)"
-ALONE = "unique: friction never falls with speed, and motions near this one come nearer (Leine & van de Wouw, 2008)"
-
 
 def is_unique(scene: Scene, law: FrictionLaw) -> bool:
     """Whether the scene has exactly one periodic motion, which attracts every start (theorem T1).
@@ -33,24 +30,16 @@ def is_unique(scene: Scene, law: FrictionLaw) -> bool:
     damping above ``largest normal load * steepest fall``, where the mean belt speed is not 0, or loads make the mass
     slip all the same. Source: Leine & van de Wouw (2008).
     """
-    return bool(why_unique(scene, law)) and not stays_at_rest(scene, law)
+    return is_unique_in_slip(scene, law) and not stays_at_rest(scene, law)
 
 
-def why_unique(scene: Scene, law: FrictionLaw) -> str:
-    """The theorem by which this scene has one steady state at every belt speed at which the mass slips, or ''.
+def is_unique_in_slip(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether a theorem says that this scene has one steady state at every belt speed at which the mass slips.
 
-    Of a law without memory under a drive, with its condition.
+    Of a law without memory under a drive.
     """
     free = scene.degrees_of_freedom > 0 and not scene.undriven
-    if not (free and _damping(scene) > 0.0 and is_convergent(scene, law)):
-        return ""
-    if law.monotone():
-        return NEVER_PART
-    fall = largest_normal_load(scene) * law.steepest_fall()
-    return (
-        f"unique: damping of {_damping(scene):.6g} exceeds the steepest fall of friction with speed, {fall:.6g} "
-        "(Leine & van de Wouw, 2008)"
-    )
+    return free and _damping(scene) > 0.0 and is_convergent(scene, law)
 
 
 def is_convergent(scene: Scene, law: FrictionLaw) -> bool:

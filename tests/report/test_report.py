@@ -256,14 +256,18 @@ def test_a_point_that_is_ok_with_a_reservation_and_one_that_has_a_range_are_told
 def test_how_it_is_known_that_a_state_is_the_only_one_is_no_trouble(ran: Runner) -> None:
     saved = ran(**at_speeds(1.0, 2.0, 3.0, 4.0))
     saved.table["unique"] = ["proved", "tested", None, "no"]
-    saved.table["model"] = "fake; unique: dashpots damp (A & B, 2008) (auto: fake, it is cheap)"
+    saved.table["model"] = "fake; unique: damped (auto: fake, it is cheap)"
     saved.table["reason"] = [None, "tested: 2 starts up to 5 apart ended here", None, None]
     page = page_of(saved)
     head, *rows = page.table("Whether every start ends there")
 
     assert head == ["unique", "how it is known", "points", "laws"]
     assert [row[:3] for row in rows] == [
-        ["proved", "dashpots damp (A & B, 2008)", "1 point"],
+        [
+            "proved",
+            "dashpots damp and friction never falls with speed (Leine & van de Wouw, 2008)",
+            "1 point",
+        ],
         ["tested", "2 starts up to 5 apart ended here", "1 point"],
         ["no", "other starts end elsewhere", "1 point"],
     ]
@@ -334,11 +338,19 @@ def test_errors_are_given_by_curve_with_place_kind_and_tolerance(ran: Runner) ->
 
 def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Runner) -> None:
     saved = ran(**at_speeds(1.0, 2.0, 3.0))
-    saved.table["model"] = ["closed form (V_lin = 50)", "closed form (V_lin = 26.25)", "legs"]
+    saved.table["model"] = [
+        "march, rk4: 50 steps",
+        "march, rk4: 26 steps",
+        "no reversal (auto: exact, cheapest)",
+    ]
 
+    told = (
+        "closed form: slip never reverses, for the belt is as fast as V_lin or faster; "
+        "auto chose exact: it accepts the scene, and no method is cheaper"
+    )
     assert page_of(saved).table("What produced the numbers")[1:] == [
-        ["fake", "closed form (V_lin = 26.25 ... 50)", "2 points", "Coulomb"],
-        ["fake", "legs", "1 point", "Coulomb"],
+        ["fake", "march, rk4: 26 ... 50 steps", "", "2 points", "Coulomb"],
+        ["fake", "no reversal (auto: exact, cheapest)", told, "1 point", "Coulomb"],
     ]
 
 
@@ -363,7 +375,7 @@ def test_a_long_table_says_how_many_rows_it_leaves_to_the_file(
 
 def test_sources_are_those_of_the_study_its_laws_and_the_methods_at_work(ran: Runner) -> None:
     saved = ran(source="Smith (1999), Fig. 3", methods=["auto"], **at_speeds(60.0))
-    saved.table["model"] = "closed form (auto: exact, cheapest method that applies)"
+    saved.table["model"] = "no reversal (auto: exact, cheapest)"
     cited = {each.what: each.words for each in sources(saved)}
 
     assert cited["the study"] == "Smith (1999), Fig. 3"

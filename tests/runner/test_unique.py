@@ -28,33 +28,33 @@ def state(law: fl.FrictionLaw, method: str = "auto", **changes: Any) -> SteadySt
 @pytest.mark.parametrize(
     ("found", "said"),
     [
-        (lambda: state(COULOMB), "dashpots damp and friction never falls"),
-        (lambda: state(COULOMB, belt_speed=60.0), "dashpots damp and friction never falls"),
-        (lambda: state(COULOMB, belt_speed=0.0), "dashpots damp and friction never falls"),
+        (lambda: state(COULOMB), "damped"),
+        (lambda: state(COULOMB, belt_speed=60.0), "damped"),
+        (lambda: state(COULOMB, belt_speed=0.0), "damped"),
         (
             lambda: state(COULOMB, damping_ratio=0.0, drive=fl.Drive(unbalance=10, frequency=1.5)),
-            "come nearer",
+            "neighbours",
         ),
-        (lambda: state(COULOMB, "shooting"), "dashpots damp and friction never falls"),
-        (lambda: state(GENTLE), "damping of 0.2 exceeds the steepest fall of friction with speed, 0.0857764"),
+        (lambda: state(COULOMB, "shooting"), "damped"),
+        (lambda: state(GENTLE), "slow fall"),
         (
             lambda: state(
                 COULOMB,
                 transverse=fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load={"unbalance": 1}),
             ),
-            "dashpots damp and friction never falls",
+            "damped",
         ),
         (
             lambda: state(STEEP, slip=fl.Slip(velocity_amplitude=3.0, frequency=1.0), belt_speed=1.0),
-            "hangs on",
+            "slip",
         ),
     ],
 )
-def test_a_theorem_is_named_with_its_condition(found: Any, said: str) -> None:
+def test_a_theorem_is_named(found: Any, said: str) -> None:
     one = found()
 
     assert (one.status, one.unique) == ("ok", "proved")
-    assert re.search(rf"; unique: [^;]*{said}", one.model)
+    assert f"; unique: {said}" in one.model
     assert "tested" not in one.reason
 
 

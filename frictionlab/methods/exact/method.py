@@ -21,18 +21,14 @@ from frictionlab.methods.exact.oscillator import RESONANT
 from frictionlab.methods.prescribed.bristle import along_one_line
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory import friction_free_velocity
-from frictionlab.theory.uniqueness import ALONE, NEVER_PART
 
-EVENTS = "closed-form legs of slip and stick between events, fixed point of the return map by Newton's method"
-REDUCED = (
-    " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
-)
 SALTATION = 1e-8
 """Error of multipliers carried through events, absolute or of those above one: rounding, much more than is seen."""
 FARTHEST = np.finfo(np.float64).max
@@ -48,30 +44,29 @@ UNBOUNDED = (
 def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
     if scene.constant_contact:
-        return "exact cannot keep the stiffness of bristles while the normal load changes"
+        return ModelWord.STIFF_CONTACT.sentence
     if not law.exact_path():
-        return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
+        return ModelWord.NO_PATH.sentence
     if not along_one_line(scene, law):
-        return "exact works along one line: this slip has a component across the belt"
+        return ModelWord.TWO_WAYS.sentence
     return None
 
 
 def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     """Why the motion between events is not known in closed form."""
     if law.memory_kind != "none":
-        return "exact needs friction without memory (Coulomb)"
+        return ModelWord.MEMORY.sentence
     if not law.constant_sliding_friction():
-        return "exact needs friction that does not vary with speed (Coulomb)"
+        return ModelWord.SPEED.sentence
     if scene.degrees_of_freedom > 0 and not law.monotone():
-        return "exact needs static friction equal to sliding friction (no mu_static)"
+        return ModelWord.STATIC.sentence
     if scene.undriven:
-        return "exact needs a drive, whose period is that of the motion"
+        return ModelWord.UNDRIVEN.sentence
     if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
         loaded = scene.signals().load[1] != Signal()
-        what = "a transverse load" if loaded else "a belt that vibrates across"
-        return f"exact works along one line: this scene has {what}"
+        return (ModelWord.LOAD_ACROSS if loaded else ModelWord.BELT_ACROSS).sentence
     if scene.degrees_of_freedom > 0 and not scene.is_harmonic and resonates(scene.mass(), RESONANT):
-        return "exact needs more damping for a sine within 1e-3 of resonance, unless it is all that changes in time"
+        return ModelWord.RESONANCE.sentence
     return None
 
 
@@ -145,7 +140,7 @@ class _Curve:
         self.sides = np.where(self.belt_speeds < 0.0, -1.0, 1.0)
         n = len(scenes)
         self.status: list[Status] = ["ok"] * n
-        self.reason, self.model, self.error_kind = [""] * n, [EVENTS] * n, ["estimated"] * n
+        self.reason, self.model, self.error_kind = [""] * n, [str(ModelWord.EVENTS)] * n, ["estimated"] * n
         self.rows = np.full((n, curve.COLUMNS), np.nan)
         self.unique = [PROVED] * n
         self.window = np.full(n, np.nan)
@@ -161,8 +156,8 @@ class _Curve:
         self._use_symmetry(open_points)
         self._judge(open_points)
         if self.scenes[0].degrees_of_freedom == 2:
-            self.model = [text + REDUCED if text else text for text in self.model]
-        proof = NEVER_PART if self.mass.damping > 0.0 else ALONE
+            self.model = [f"{text}; {ModelWord.X2_DECAYS}" if text else text for text in self.model]
+        proof = ModelWord.DAMPED if self.mass.damping > 0.0 else ModelWord.NEIGHBOURS
         proved = {text: f"{text}; {proof}" for text in set(self.model)}
         self.model = [
             proved[text] if unique == PROVED else text
@@ -218,7 +213,7 @@ class _Curve:
         if self.scenes[i].initial is not None and self._settles(i):
             return
         self.status[i], self.reason[i], self.error_kind[i] = "not_unique", reason, ""
-        self.model[i] = "closed form"
+        self.model[i] = str(ModelWord.ANY_START)
         self.bounds[i], self.window[i] = bounds, float(self.scenes[i].periods)
         self.rows[i, curve.LEGS] = 0.0
 
@@ -266,17 +261,12 @@ class _Curve:
         """Say of each of these how it was found, and of those that are not as good as asked, why."""
         rows = self.rows[places]
         linear = rows[:, curve.FOUND] == 1.0
-        model = self._model_without_reversal()
         for i in places[linear].tolist():
-            self.model[i], self.error_kind[i] = model, "guaranteed"
+            self.model[i], self.error_kind[i] = str(ModelWord.NO_REVERSAL), "guaranteed"
         closed = rows[:, curve.RESIDUAL] <= 1e3 * rows[:, curve.ROUNDING]
         good = closed & (rows[:, curve.ERROR] <= min(self.tolerance, FARTHEST)) & (self.mass.damping > 0.0)
         for i in places[~linear & ~good].tolist():
             self._judge_one(i)
-
-    def _model_without_reversal(self) -> str:
-        v_lin = friction_free_velocity(self.scenes[0])
-        return f"closed form: slip never reverses (belt speed >= V_lin = {v_lin:.6g})"
 
     def _judge_one(self, i: int) -> None:
         row = self.rows[i]
@@ -365,9 +355,6 @@ class _VaryingCurve(_Curve):
             self.rows[i] = np.nan
             self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
         super()._judge(places[~free])
-
-    def _model_without_reversal(self) -> str:
-        return "closed form: slip never reverses (belt speed >= V_lin)"
 
 
 def _permanent_stick(low: float, high: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.words import ModelWord
 
 
 class MapKind(NamedTuple):
@@ -21,11 +22,11 @@ class MapKind(NamedTuple):
     noise: float = 2e-12
 
 
-_OF_MEMORY = MapKind("; mass and memory solved together (Rodas5P)", rough=1e-7)
+_OF_MEMORY = MapKind(ModelWord.WITH_MEMORY, rough=1e-7)
 MAP_KINDS = {
     "none": MapKind("", 1e-9, finest=1e-12, noise=1e-14),
-    "exact path": MapKind("; deflection as a function of the slip path", 1e-6, finest=1e-12, noise=1e-14),
-    "bristle": MapKind("; mass and bristle solved together (Rodas5P)", rough=1e-6),
+    "exact path": MapKind(ModelWord.SLIP_PATH, 1e-6, finest=1e-12, noise=1e-14),
+    "bristle": MapKind(ModelWord.WITH_BRISTLE, rough=1e-6),
     "deflections": _OF_MEMORY,
     "scalars": _OF_MEMORY,
 }

@@ -13,10 +13,11 @@ from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
+from frictionlab.methods.prescribed.closed_loop_line import Along, line_loop
 from frictionlab.methods.prescribed.collocation import plane_loop
 from frictionlab.methods.prescribed.loop import Closed, Open, PrescribedMean, Vectors
-from frictionlab.methods.prescribed.varying_slip import BY_SYMMETRY, VaryingSlip, nodes
+from frictionlab.methods.prescribed.varying_slip import VaryingSlip, nodes
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
@@ -52,9 +53,9 @@ class BristlePoint:
             return PrescribedMean(low=closed.low, high=closed.high)
         self.model = closed.model
         if self.belt_speed == 0.0:
-            self.model, self.error_kind = BY_SYMMETRY, "guaranteed"
+            self.model, self.error_kind = ModelWord.SYMMETRY, "guaranteed"
             return PrescribedMean(0j, ROUNDING * closed.loop.largest)
-        if closed.model == ONE_WAY and self.law.constant_sliding_friction():
+        if closed.model == ModelWord.SLIP_ONE_WAY and self.law.constant_sliding_friction():
             self.error_kind = "guaranteed"
         return PrescribedMean(closed.loop.mean, closed.error)
 

@@ -15,10 +15,8 @@ from frictionlab.methods.prescribed.collocation import collocated
 from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, closed_legs
 from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, Closed, Loop, Open
 from frictionlab.methods.prescribed.periodic_deflection import natural_reach
+from frictionlab.methods.words import ModelWord
 from frictionlab.quantities import EPSILON, Floats
-
-TWO_LEGS = "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature"
-ONE_WAY = "closed form: slip that never reverses saturates the deflection"
 
 
 class Along(NamedTuple):
@@ -73,7 +71,7 @@ def _legs(law: BristleLaw, along: Along) -> Closed:
         loops.append(_turned(along, (start + along.turn - math.pi, *rest), POINTS, SHARES))
     coarse, fine = loops
     error = 4.0 * abs(fine.mean - coarse.mean) + 64.0 * EPSILON * fine.largest
-    return Closed(fine, error, TWO_LEGS, seconds)
+    return Closed(fine, error, ModelWord.TWO_LEGS, seconds)
 
 
 def _one_way(law: BristleLaw, along: Along) -> Closed:
@@ -84,7 +82,7 @@ def _one_way(law: BristleLaw, along: Along) -> Closed:
     z = law.largest_deflection()
     rub = np.array([[law.friction(v, z, law.rate(v, z)) for v in row] for row in slip.tolist()])
     loop = _turned(along, (edges[:-1], width, slip, np.full(slip.shape, z), rub), POINTS, SHARES)
-    return Closed(loop, 16.0 * EPSILON * loop.largest, ONE_WAY, 0.0)
+    return Closed(loop, 16.0 * EPSILON * loop.largest, ModelWord.SLIP_ONE_WAY, 0.0)
 
 
 def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats) -> Loop:

@@ -23,12 +23,10 @@ from frictionlab.methods.prescribed.periodic_deflection import (
     layer,
     natural_reach,
 )
+from frictionlab.methods.words import ModelWord
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
 
-COLLOCATED = (
-    "prescribed slip: deflection over one period by Radau IIA collocation, fixed point by Newton's method"
-)
 FAR = 10.0
 CLOSEST = 1e-12
 """Angle [rad] at which the grading towards a passage through rest ends."""
@@ -56,7 +54,9 @@ def plane_loop(law: BristleLaw, motion: Motion, belt_speed: float, tolerance: fl
     if isinstance(found, Open):
         return found
     loop, finer = (_turned(one, slip, belt_speed) for one in (found.loop, _halved(found.loop)))
-    return Closed(finer, found.error + 2.0 * abs(finer.mean - loop.mean), COLLOCATED, found.seconds)
+    return Closed(
+        finer, found.error + 2.0 * abs(finer.mean - loop.mean), ModelWord.COLLOCATION, found.seconds
+    )
 
 
 def collocated(
@@ -66,7 +66,7 @@ def collocated(
     circle = _circle(law) if isinstance(start, complex) else -1.0
     accuracy = Accuracy.of(law, slip, belt_speed, tolerance, circle)
     found = closed_deflection(law, slip, stretches(law, slip, belt_speed), accuracy, start)
-    return found if isinstance(found, Open) else found._replace(model=COLLOCATED)
+    return found if isinstance(found, Open) else found._replace(model=ModelWord.COLLOCATION)
 
 
 def _halved(loop: Loop) -> Loop:

@@ -24,6 +24,7 @@ from frictionlab.methods.periodic.period_map import size_of
 from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import BodyNumbers, Motion
@@ -36,7 +37,6 @@ PERIODS = 100
 FORGETS = 1.0 - 1e-6
 """Largest multiplier of a memory that converges from every start."""
 TWO_STARTS = "2 starts ended here, with no memory and with that of steady sliding"
-MODEL = "prescribed slip: memory by Rodas5P, periodic"
 
 
 class MemoryPoint:
@@ -50,7 +50,8 @@ class MemoryPoint:
         self.maps = Held(maps_of, self.law, self.body)
         self.slip = None if scene.is_harmonic else VaryingSlip.of(scene.signals(), self.motion.normal_load)
         self.status: Status = "ok"
-        self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
+        self.reason, self.model = "", str(ModelWord.PRESCRIBED_MEMORY)
+        self.error_kind, self.seconds = "estimated", 0.0
         self.curve: Curve | None = None
         self.from_rest: Floats | None = None
         self.tested = ""

@@ -19,11 +19,9 @@ from frictionlab.methods.prescribed.varying_axes import AxesPoint
 from frictionlab.methods.prescribed.varying_legs import LegsPoint
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.methods.under_way import each_told
+from frictionlab.methods.words import ModelWord
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.saturation import saturates
-
-AT_ONCE = "unique: friction hangs on the prescribed slip alone"
-
 
 Point = VaryingPoint | BristlePoint | AxesPoint | LegsPoint | MemoryPoint
 
@@ -63,7 +61,7 @@ def _told_uniqueness(row: Point) -> str:
     if isinstance(row, MemoryPoint):
         row.reason = f"{row.reason}; {row.tested}" if row.reason else row.tested
         return TESTED
-    row.model = f"{row.model}; {AT_ONCE}"
+    row.model = f"{row.model}; {ModelWord.BY_SLIP}"
     return PROVED
 
 

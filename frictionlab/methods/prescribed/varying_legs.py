@@ -21,13 +21,13 @@ from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.exact_legs import gained
 from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import WIDEST_PANEL, VaryingSlip, piece_at
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.piecewise import PieceNumbers, Piecewise
 
-ANY_LEGS = "prescribed slip along a line: deflection exact along every leg, Gauss-Lobatto quadrature"
 FORGETS_NOTHING = (
     "in a period the bristle forgets less of its start than rounding hides: the mean depends on the start"
 )
@@ -210,7 +210,7 @@ class LegsPoint:
         widest = WIDEST_PANEL / self.slip.quickest if self.slip.quickest else math.inf
         self.path = ExactPath(law.under_load(motion.normal_load), moved, self.slip.normal_load, widest)
         self.status: Status = "ok"
-        self.reason, self.model, self.error_kind, self.start = "", ANY_LEGS, "estimated", math.nan
+        self.reason, self.model, self.error_kind, self.start = "", str(ModelWord.LEGS), "estimated", math.nan
         self.found = self._answer()
         self.seconds = self.path.seconds
 

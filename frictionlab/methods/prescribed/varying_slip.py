@@ -13,6 +13,7 @@ from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.loop import PrescribedMean, Vectors
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
@@ -22,12 +23,6 @@ from frictionlab.theory.piecewise import PieceNumbers, Piecewise, piecewise
 from frictionlab.theory.prescribed import MeanDirection, mean_direction
 from frictionlab.theory.rest import friction_at_rest
 
-ALONG = "closed form: slip prescribed along the belt"
-BY_SYMMETRY = "closed form: friction of the two half periods of slip cancels"
-BETWEEN_REVERSALS = (
-    "closed form: slip prescribed along the belt, the normal load integrated between its reversals"
-)
-BETWEEN_CORNERS = "prescribed slip: Gauss-Lobatto quadrature, panels between corners graded towards slow slip"
 NO_SLIP = "the slip rests for a part of the period: friction there is any value up to mu"
 WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
@@ -172,7 +167,8 @@ class VaryingPoint:
         self.slip = slip or VaryingSlip.of(scene.signals(), scene.normal_load)
         self.belt_speed, self.law, self.sines = scene.belt_speed, law, scene.is_harmonic
         self.status: Status = "ok"
-        self.reason, self.model, self.error_kind = "", "", "guaranteed"
+        self.reason, self.error_kind = "", "guaranteed"
+        self.model: str = ""
         start = time.perf_counter()
         self.found = self._answer()
         self.seconds = time.perf_counter() - start
@@ -182,11 +178,11 @@ class VaryingPoint:
         if turns is not None and self.law.constant_sliding_friction():
             most = self.law.sliding_friction(1.0)
             mean, error = complex(most * turns.mean, 0.0), most * turns.error
-            self.model = ALONG if self.sines else BETWEEN_REVERSALS
+            self.model = ModelWord.SLIP_ALONG if self.sines else ModelWord.SLIP_AND_LOAD
         elif self.sines and self.belt_speed == 0.0:
-            mean, error, self.model = 0j, 8.0 * EPSILON * self.law.sliding_friction(1.0), BY_SYMMETRY
+            mean, error, self.model = 0j, 8.0 * EPSILON * self.law.sliding_friction(1.0), ModelWord.SYMMETRY
         else:
-            mean, error, self.model = *self._by_quadrature(turns), BETWEEN_CORNERS
+            mean, error, self.model = *self._by_quadrature(turns), ModelWord.QUADRATURE
             self.error_kind = "estimated"
         resting = self._resting()
         if resting > 0.0:

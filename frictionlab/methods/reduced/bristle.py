@@ -19,6 +19,7 @@ from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.reduced.common import ROUNDING, TOLERANCE, Modelled
 from frictionlab.methods.reduced.loops import Loops
 from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
@@ -26,9 +27,6 @@ from frictionlab.scene.scene import Scene, Slip
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 
-BALANCED_LOOP = (
-    "one harmonic of x1' and of the bristles' friction balanced, friction averaged over the harmonic slip"
-)
 LOOPS_ROUNDING = 99.0 * ROUNDING
 """Of friction over a loop, relative to steady friction, beyond that of formulas."""
 STEADY = 0.98
@@ -79,7 +77,9 @@ def bristles(scenes: Sequence[Scene], law: BristleLaw) -> Modelled:
 
     rounding = LOOPS_ROUNDING * law.sliding_friction(0.0)
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
-    return Modelled(mean, reasons, BALANCED_LOOP, orbit, rounding, max(STEADY, 0.5 * (1.0 + decay)))
+    return Modelled(
+        mean, reasons, ModelWord.ONE_OF_BRISTLES, orbit, rounding, max(STEADY, 0.5 * (1.0 + decay))
+    )
 
 
 def _point(mass: Mass, belt_speed: float, law: BristleLaw) -> tuple[OneBalance | None, str]:

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, ReducedModel, Status
-from frictionlab.methods.exact.method import REDUCED, Exact
+from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.shooting.saturated import HELD
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
@@ -32,9 +33,6 @@ ROUNDING = 1e-10
 """Of models, relative to the friction coefficient: their formulas keep twelve digits or more."""
 TOLERANCE = 1e-9
 """On the mean of the full problem, relative to the friction coefficient in quick slip."""
-UNBOUNDED_ENERGIES = "; energies are those of this motion, without an error"
-"""Said of every row: what a model leaves out is known in the mean friction alone."""
-EQUIVALENT = "; the belt's vibration as the drive that is equivalent to it"
 NOT_KNOWN = "the model error is not known, for the steady state is not"
 UNSTEADY = "the motion of one drive period may be unstable: the mean may not be unique; use shooting"
 AT_REST = (
@@ -80,8 +78,8 @@ class OfOneModel(ReducedModel):
         error, reasons = _left_out(steady, law, found)
         seconds = (time.perf_counter() - start) / len(scenes)
         decays = steady[0].degrees_of_freedom == 2 and steady[0].load_along_belt_only
-        text = found.text + (REDUCED if decays else "") + UNBOUNDED_ENERGIES
-        text += EQUIVALENT if steady is not scenes else ""
+        text = f"{found.text}; {ModelWord.X2_DECAYS}" if decays else str(found.text)
+        text += f"; {ModelWord.EQUIVALENT_DRIVE}" if steady is not scenes else ""
         against = np.array([bool(reason) for reason in reasons])
         status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
         said = [

@@ -23,12 +23,12 @@ from frictionlab.methods.reduced.common import (
 from frictionlab.methods.reduced.sampled import sampled, sampled_refusal
 from frictionlab.methods.reduced.switched import switched, switched_refusal
 from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.words import ModelWord
 from frictionlab.numerics.roots import monotone_root
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity, one_harmonic_least_ratio, one_harmonic_velocity
 
-EXPLICIT = "one harmonic of x1' and of Coulomb friction balanced (Eqs. 5, 8, 9 in explicit form)"
 NOT_ONE_SINE = (
     "harmonic_balance takes sines of the drive's frequency, of loads and of the belt's vibration, under a constant "
     "normal load"
@@ -104,7 +104,7 @@ class HarmonicBalance(OfOneModel):
             return sampled(scenes, law, self.harmonics)
         if self.harmonics > 1:
             return switched(scenes, law, self.harmonics, self.tail is not False)
-        return modelled_along(scenes, law, EXPLICIT, one_harmonic)
+        return modelled_along(scenes, law, ModelWord.ONE_HARMONIC, one_harmonic)
 
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:

@@ -24,6 +24,7 @@ from frictionlab.methods.reduced.common import (
     steadied,
 )
 from frictionlab.methods.shooting.saturated import HELD
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
@@ -37,10 +38,6 @@ from frictionlab.theory import (
 )
 from frictionlab.theory.linear import friction_free_response, less
 from frictionlab.theory.rest import stays_at_rest
-
-ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
-PLANE = "direct separation of motion: quadrature over the friction-free motion"
-AVERAGED = "direct separation of motion: friction averaged over the friction-free motion of these waveforms"
 
 
 class Mdsm(OfOneModel):
@@ -85,7 +82,7 @@ class Mdsm(OfOneModel):
     def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         """The friction-free motion."""
         if scenes[0].is_harmonic and _in_closed_form(scenes[0], law):
-            return modelled_along(scenes, law, ALONG, _friction_free)
+            return modelled_along(scenes, law, ModelWord.MDSM_CLOSED, _friction_free)
         return _averaged(scenes, law)
 
 
@@ -132,7 +129,9 @@ def _averaged(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
 
     sines = scenes[0].is_harmonic
     settled = belt_speeds_of(scenes) == 0.0 if sines else None
-    return Modelled(means, reasons, PLANE if sines else AVERAGED, orbit, error, settled=settled)
+    return Modelled(
+        means, reasons, ModelWord.MDSM_PLANE if sines else ModelWord.MDSM_WAVES, orbit, error, settled=settled
+    )
 
 
 def _friction_free_slip(scene: Scene, law: FrictionLaw) -> VaryingSlip:
@@ -168,9 +167,9 @@ def _closed_form(motion: Motion, belt_speed: float) -> tuple[float, str] | None:
     along, across = motion.velocity, motion.transverse_velocity
     if along == 0.0 and across != 0.0:
         mean = mean_prescribed_transverse(belt_speed / abs(across))
-        return float(mean), "closed form: slip prescribed across the belt"
+        return float(mean), ModelWord.SLIP_ACROSS
     turning = sorted((abs(along + 1j * across), abs(along - 1j * across)))
     if along != 0.0 and turning[0] <= 4.0 * EPSILON * turning[1]:
         mean = mean_prescribed_circular(belt_speed / abs(along))
-        return float(mean), "closed form: slip prescribed on a circle"
+        return float(mean), ModelWord.SLIP_ON_A_CIRCLE
     return None

@@ -24,13 +24,13 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip, sliding_vectors
 from frictionlab.methods.reduced.common import Modelled, mean_position, plane_refusal
 from frictionlab.methods.reduced.reversals import Phasors, impedances
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 
-SAMPLED = "{} harmonics of motion and of friction balanced on samples of a period, those beyond left out"
 NOT_SETTLED = (
     "Newton's method does not settle on a motion of {} harmonics: slip passes too near rest for so few, or "
     "crosses zero there again and again; use shooting"
@@ -124,7 +124,7 @@ def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modell
         motion = motions[i]
         return None if motion is None else _orbit(scenes[i], law, motion.velocity, complex(means[i]))
 
-    return Modelled(means.real if line else means, reasons, SAMPLED.format(harmonics), orbit)
+    return Modelled(means.real if line else means, reasons, f"{harmonics} {ModelWord.SAMPLED}", orbit)
 
 
 def _motions(what: Equations, belt_speeds: Floats) -> list[SampledMotion | None]:

@@ -25,15 +25,13 @@ from frictionlab.methods.reduced.reversals import (
     response_of_harmonics,
     reversals_at,
 )
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 
-BALANCED = "{} harmonics of x1' and of Coulomb friction balanced on its exact switching angles; {}"
-TAIL = "beyond them the mass as a free one, in closed form"
-PLAIN = "those beyond left out"
 CROSSES_AGAIN = (
     "the slip of {harmonics} harmonics crosses zero more than twice a period: it cannot rest on the belt; give "
     "tail: true, or use exact"
@@ -83,7 +81,8 @@ def switched(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int, tail: bo
         x = side * one.x + mass.normal_load * mean[i]
         return replace(one, tau=tau, x=x, v=side * one.v, friction=mu * side * one.friction)
 
-    return Modelled(mean, reasons, BALANCED.format(harmonics, TAIL if tail else PLAIN), orbit)
+    beyond = ModelWord.TAIL if tail else ModelWord.NO_TAIL
+    return Modelled(mean, reasons, f"{harmonics} {ModelWord.SWITCHED}; {beyond}", orbit)
 
 
 def switched_motions(scene: Scene, law: FrictionLaw, line: SwitchedLine, speeds: Floats) -> Switched:

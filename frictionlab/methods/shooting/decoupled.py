@@ -24,13 +24,13 @@ from frictionlab.methods.base import Answers, Multipliers
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.methods.shooting.attractors import multiplier
 from frictionlab.methods.shooting.driven import solve_driven
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.panels import NODES, interpolation_weights
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
 
-APART = "shooting, two degrees of freedom solved separately: per-axis friction does not couple them"
 HELD_ACROSS = "across the belt the bristle is elastic under this load: the mean there depends on the start"
 
 
@@ -77,7 +77,7 @@ def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> 
         "; ".join(part for part in (reason, across.reason if status == "ok" else "") if part)
         for status, reason in zip(along.status, along.reason, strict=True)
     ]
-    models = [f"{APART}; {model.partition('; ')[2]}" for model in along.model]
+    models = [f"{ModelWord.SHOOTING_APART}; {model.partition('; ')[2]}" for model in along.model]
     nothing = np.full(len(scenes), np.nan)
 
     def floquet() -> Floats:

@@ -46,13 +46,14 @@ from frictionlab.methods.shooting.attractors import (
 from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, spread_of_one_mean
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.methods.under_way import each_told
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import can_hold, friction_at_rest, resting_range, stays_at_rest
-from frictionlab.theory.uniqueness import ALONE, why_unique
+from frictionlab.theory.uniqueness import is_unique_in_slip
 
 Complexes = NDArray[np.complex128]
 
@@ -69,7 +70,6 @@ HELD_ELASTICALLY = (
 )
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
 CARRIED = "friction holds the mass, and the belt carries it for some {:.0e} drive periods from slip to slip"
-NEAR_REST = "; slip near rest in polar coordinates (Radau IIA)"
 BY_ROUNDING = (
     "next to rest two motions hardly approach each other in a period, and rounding alone leaves this error"
 )
@@ -127,7 +127,7 @@ class SteadyStates:
         judged_by_multipliers = not problem.goal.contracts or undamped(scenes[0])
         self.matrices: list[Floats | None] = [None] * n
         self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
-        self.proof = why_unique(scenes[0], problem.law)
+        self.proof = is_unique_in_slip(scenes[0], problem.law)
         self.near_rest = problem.by_implicit_steps
         self.solved_by = [problem] * n
 
@@ -249,7 +249,9 @@ class SteadyStates:
         """As every method gives them."""
         ways = list(dict.fromkeys(self.solved_by))
         models = {(way, ""): _model(self.scenes.scene, self.problem, way) for way in ways}
-        models |= {(way, PROVED): f"{models[way, '']}; {self.proof or ALONE}" for way in ways}
+        damped = ModelWord.DAMPED if self.problem.law.monotone() else ModelWord.SLOW_FALL
+        theorem = damped if self.proof else ModelWord.NEIGHBOURS
+        models |= {(way, PROVED): f"{models[way, '']}; {theorem}" for way in ways}
         proved = [PROVED if each == PROVED else "" for each in self.unique]
         return Answers(
             status=self.status,
@@ -485,12 +487,13 @@ def _at_rest(curve: Curve, row: int) -> bool:
 
 def _model(scene: Scene, problem: PeriodicProblem, solved_by: PeriodicProblem) -> str:
     planar = isinstance(problem.like, complex)
-    directions = "two degrees of freedom" if planar else "one degree of freedom"
-    decays = (
-        ": without a load across the belt x2 decays" if scene.degrees_of_freedom == 2 and not planar else ""
-    )
-    implicit = "" if solved_by is problem else NEAR_REST
-    return f"shooting, {directions}{decays}{MAP_KINDS[problem.kind].said}{implicit}"
+    words = [
+        ModelWord.SHOOTING_PLANE if planar else ModelWord.SHOOTING_LINE,
+        ModelWord.X2_DECAYS if scene.degrees_of_freedom == 2 and not planar else "",
+        MAP_KINDS[problem.kind].said,
+        "" if solved_by is problem else ModelWord.NEAR_REST,
+    ]
+    return "; ".join(filter(None, words))
 
 
 def _multipliers(curve: Curve) -> Floats:

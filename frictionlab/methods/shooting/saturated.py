@@ -17,13 +17,13 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
 from frictionlab.methods.base import Answers, Multipliers
 from frictionlab.methods.shooting.driven import solve_driven
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.read import read_columns
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.saturation import remaining_share, saturates
-from frictionlab.theory.uniqueness import why_unique
+from frictionlab.theory.uniqueness import is_unique_in_slip
 
-SATURATED = "the one deflection along the slip stays at its limit: friction is that of sliding"
 HELD = "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
 
 
@@ -78,9 +78,9 @@ def solve_saturated(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float)
         HELD if status == "not_unique" and scene.belt_speed == 0.0 else reason
         for status, reason, scene in zip(found.status, found.reason, scenes, strict=True)
     ]
-    models = [f"{model}; {SATURATED}" for model in found.model]
+    models = [f"{model}; {ModelWord.SATURATED}" for model in found.model]
     # The theorem then holds for friction that becomes this, too.
-    unique = found.unique if why_unique(free[0], Saturated(mu=mu)) else None
+    unique = found.unique if is_unique_in_slip(free[0], Saturated(mu=mu)) else None
     return replace(
         found, reason=reasons, model=models, floquet=floquet, multipliers=multipliers, unique=unique
     )

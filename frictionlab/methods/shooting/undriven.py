@@ -47,6 +47,7 @@ from frictionlab.methods.shooting.undriven_path import (
     UndrivenPath,
 )
 from frictionlab.methods.under_way import each_told, once
+from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track
@@ -54,12 +55,6 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.sliding_stability import loses_energy
 
-COMES_TO_REST = "at rest, where the motion from scene.initial ends"
-SLIDES = "steady sliding, which attracts"
-SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
-STICKS = "a cycle of stick and slip"
-SLIPS = "a cycle of slip without rest"
-NEVER_REPEATS = "a motion that does not repeat"
 BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
 LOOKS_AVERAGED, FEWEST_LOOKS = (512, 1024, 2048), 128
@@ -232,7 +227,9 @@ class Undriven:
 
     def _sliding(self) -> PeriodicMotion:
         path = self._path
-        return PeriodicMotion(path.sliding, math.nan, path.sliding_friction, ROUNDING, math.nan, SLIDES)
+        return PeriodicMotion(
+            path.sliding, math.nan, path.sliding_friction, ROUNDING, math.nan, ModelWord.SLIDES
+        )
 
     def _loses_energy(self, state: Floats) -> bool:
         """Whether every motion with no more energy than this one loses it, down to steady sliding."""
@@ -252,7 +249,7 @@ class Undriven:
         swing *= min(1.0, abs(path.speed) / math.hypot(*swing))
         state = path.sliding.copy()
         state[:2] += swing
-        return PeriodicMotion(state, TURN, path.sliding_friction, ROUNDING, 1.0, SLIDES_FREELY)
+        return PeriodicMotion(state, TURN, path.sliding_friction, ROUNDING, 1.0, ModelWord.SLIDES_FREELY)
 
     # --- from the end of rest, without memory ---
 
@@ -271,7 +268,7 @@ class Undriven:
         (_, before), (turns, mean) = rough, fine
         # two step sizes may agree by chance: what one step of the finer motion may cost
         error = interpreted(stated_error)(abs(mean - before), 0.0, accuracy / FINER + 1e-12)
-        return PeriodicMotion(release, turns * TURN, mean, error, 0.0, STICKS)
+        return PeriodicMotion(release, turns * TURN, mean, error, 0.0, ModelWord.STICKS)
 
     def _back_to_rest(self, accuracy: float) -> tuple[float, float] | None:
         """Turns and mean friction from the end of rest to the next; None where the mass does not rest again.
@@ -334,7 +331,7 @@ class Undriven:
         """Raises NotFound where a motion across the belt might grow."""
         span, speed = self._path.follow(cycle.state, cycle.turns, room=PANELS_AT_FIRST), self._path.speed
         self._check_across(most_slip(span.track, speed))
-        kind = STICKS if span.slowest < STICKING * abs(speed) else SLIPS
+        kind = ModelWord.STICKS if span.slowest < STICKING * abs(speed) else ModelWord.SLIPS
         return PeriodicMotion(
             cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind
         )
@@ -362,7 +359,7 @@ class Undriven:
             found = found._replace(error=found.error + 2.0 * abs(birkhoff_mean(finer) - birkhoff_mean(means)))
         turns = BETWEEN_LOOKS * len(means)
         return PeriodicMotion(
-            states[-1], math.nan, found.mean, found.error, math.nan, NEVER_REPEATS, found, turns
+            states[-1], math.nan, found.mean, found.error, math.nan, ModelWord.NEVER_REPEATS, found, turns
         )
 
     def _means(self, state: Floats, looks: int, accuracy: float) -> Floats:
@@ -379,7 +376,7 @@ class Undriven:
         """On a belt at rest: the spring keeps what friction holds when the motion has died out."""
         start, mass = self.scene.start, self._path.mass
         if start.x == start.velocity == 0.0:
-            return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, COMES_TO_REST)
+            return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, ModelWord.AT_REST)
         unit, accuracy = math.sqrt(mass.stiffness) / mass.normal_load, self._accuracy
         state, left = self._rested(accuracy)
         while True:
@@ -389,7 +386,7 @@ class Undriven:
             mean = float(unit * state[0])
             error = interpreted(stated_error)(unit * float(abs(state[0] - before[0])), 0.5 * unit * left, 0.0)
             if error <= self.tolerance or accuracy <= LEAST:
-                return PeriodicMotion(state, math.nan, mean, error, math.nan, COMES_TO_REST)
+                return PeriodicMotion(state, math.nan, mean, error, math.nan, ModelWord.AT_REST)
 
     def _rested(self, accuracy: float) -> tuple[Floats, float]:
         """The state in which the motion has died out, but for so much of its way. Raises NotFound."""
@@ -415,7 +412,7 @@ class Undriven:
 
     def orbit(self, motion: PeriodicMotion) -> Orbit:
         """The orbit of the motion; of one that stands still, over 2 pi."""
-        if motion.kind == COMES_TO_REST:
+        if motion.kind == ModelWord.AT_REST:
             x = motion.state[0] / math.sqrt(self._path.mass.stiffness)
             whole = np.ones((1, NODES.size), np.complex128)
             held = -motion.mean * whole
@@ -455,7 +452,7 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
             reason[i] = motion
             continue
         found[i] = undriven, motion
-        status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
+        status[i], model[i], kind[i] = "ok", motion.kind, "estimated"
         mean[i], error[i] = motion.mean, motion.error
         period[i], multipliers[i] = motion.period / TURN, motion.multiplier
         if motion.long is not None:

@@ -188,7 +188,7 @@ def test_a_curve_of_elements_has_every_column_of_a_steady_state() -> None:
     table = fl.curve(driven(1.0), THREE, belt_speed=speeds, tolerance=1e-6, columns="all")
 
     assert set(table["status"]) == {"ok"}
-    assert "mass and memory" in table["model"][0]
+    assert table["model"][0] == "shooting 1DOF; memory (auto: shooting, memory of friction)"
     balance = table["energy_input"] - table["energy_viscous"] - table["energy_friction"]
     assert np.abs(balance).max() <= 1e-4 * table["energy_input"].abs().max()
     assert table["floquet"].max() < 1.0

@@ -94,7 +94,7 @@ def test_the_orbit_of_a_cycle_closes_and_feeds_the_columns() -> None:
     assert float(orbit.x1.max()) == pytest.approx(float(CANUDAS["deflection"]), rel=1e-3)
     # the mean balance: the spring carries what friction does
     assert float(orbit.x1.mean()) == pytest.approx(found.mean_friction, rel=1e-2)
-    assert "a cycle of stick and slip" in found.model
+    assert "undriven stick-slip" in found.model
 
 
 def test_where_sliding_and_a_cycle_both_attract_the_start_decides() -> None:
@@ -104,8 +104,8 @@ def test_where_sliding_and_a_cycle_both_attract_the_start_decides() -> None:
     from_rest = fl.steady_state(block(0.35), law)
     from_sliding = fl.steady_state(block(0.35, initial=sliding), law)
 
-    assert "stick and slip" in from_rest.model
-    assert "steady sliding" in from_sliding.model
+    assert "stick-slip" in from_rest.model
+    assert "undriven sliding" in from_sliding.model
     assert from_sliding.mean_friction == law.sliding_friction(0.35)
     assert math.isnan(from_sliding.period)
     assert from_rest.mean_friction != pytest.approx(from_sliding.mean_friction, abs=1e-4)
@@ -144,7 +144,7 @@ def test_ageing_contacts_slide_steadily_on_springs_stiffer_than_the_critical_one
     found = fl.steady_state(scene, law, tolerance=1e-6)
 
     assert found.status == "ok", found.reason
-    assert ("steady sliding" in found.model) == (critical < 1.0)
+    assert ("undriven sliding" in found.model) == (critical < 1.0)
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_on_a_belt_at_rest_the_mass_holds_below_the_limit_and_does_not_drift(law
     orbit = found.orbit(50)
 
     assert found.status == "ok", found.reason
-    assert "at rest" in found.model
+    assert "undriven rest" in found.model
     assert np.ptp(orbit.x1) <= 4e-6
     assert found.mean_friction == pytest.approx(float(orbit.x1[0]) / 2.0, abs=found.error)
     assert abs(found.mean_friction) <= 0.5

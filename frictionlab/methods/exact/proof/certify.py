@@ -9,10 +9,10 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.exact.proof.motion import NotProved
 from frictionlab.methods.exact.proof.prove import prove
+from frictionlab.methods.words import ModelWord
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.uniqueness import is_unique
 
-PROVED = "; its events enclosed and its mean proved in interval arithmetic (Krawczyk), of the only orbit (theorem T1)"
 NOT_UNIQUE = "not proved: no theorem says that there is no other orbit"
 
 
@@ -36,7 +36,7 @@ def certified(answers: Answers, scenes: Sequence[Scene], law: FrictionLaw) -> An
                     proved.mean,
                     proved.error,
                     "guaranteed",
-                    model[i] + PROVED,
+                    f"{model[i]}; {ModelWord.INTERVALS}",
                 )
                 continue
         reason[i] = "; ".join(part for part in (reason[i], problem) if part)

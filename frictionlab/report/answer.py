@@ -12,7 +12,7 @@ from frictionlab.charts.sweeps import sweep_of
 from frictionlab.printable import MOST_DIGITS, with_error
 from frictionlab.quantities import Floats
 from frictionlab.report.facts import Facts
-from frictionlab.report.findings import place_of, with_remark
+from frictionlab.report.findings import above_tolerance, place_of, with_remark
 from frictionlab.report.shapes import shape_sentence
 from frictionlab.report.tables import begun, listed, named, settings, the
 from frictionlab.results.pairs import Difference, best_rows
@@ -301,12 +301,12 @@ def _unanswered(run: Facts) -> Iterator[Markup]:
 
 def _rough_or_remarked(run: Facts) -> Iterator[Markup]:
     """Errors above the tolerance, and points that are ok with something else to note."""
-    table, tolerance = run.table, run.saved.study.tolerance
-    above = (table["error"] > tolerance) & ~table["method"].isin(run.reduced)
+    table = run.table
+    above = above_tolerance(run, table) & ~table["method"].isin(run.reduced)
     if len(rows := table[above]):
         at = f"{counted(len(rows), 'point')}, up to {rows['error'].max():.2g}"
         told = Markup('<a href="#curves">the error exceeds the tolerance of {:g}</a> at {}{}')
-        yield told.format(tolerance, at, _who(rows, table))
+        yield told.format(run.saved.study.tolerance, at, _who(rows, table))
     if len(rows := table[with_remark(run) & ~above]):
         carry = f"{counted(len(rows), 'point')} {'carries' if len(rows) == 1 else 'carry'}"
         yield Markup('<a href="#odd">{} a remark</a>{}').format(carry, _who(rows, table))

@@ -56,10 +56,15 @@ def _numbers(run: Facts, rows: pd.DataFrame) -> list[Cell]:
     if known.empty:
         return [*spans, *[""] * 4]
     worst = known.loc[known["error"].idxmax()]
-    above = int((known["error"] > run.saved.study.tolerance).sum())
+    above = int(above_tolerance(run, known).sum())
     kinds = joined_values(known["error_kind"].dropna())
     at = setting(run.speed, worst[run.speed])
     return [*spans, size(float(worst["error"])), at, kinds, counted(above, "point") if above else ""]
+
+
+def above_tolerance(run: Facts, rows: pd.DataFrame) -> pd.Series:
+    """Which rows have a larger error than asked for; of a long-time mean none is asked."""
+    return (rows["error"] > run.saved.study.tolerance) & (rows["error_kind"] != "statistical")
 
 
 def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:

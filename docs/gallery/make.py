@@ -19,6 +19,11 @@ from frictionlab.study.figure_options import FIGURE_NAMES
 
 GALLERY = Path(__file__).parent
 STUDIES = GALLERY.parent.parent / "studies"
+FOUND = {
+    "paper": "The paper, claim by claim",
+    "dynamic_laws": "What dynamic laws change",
+}
+"""Pages beside this folder, of what many studies found together."""
 COMMAND = Path(sys.executable).parent / "frictionlab"
 
 
@@ -123,7 +128,8 @@ def make(exhibit: Exhibit) -> None:
 
 def index(shown: list[Exhibit]) -> str:
     """The first page: the pictures of each group, then the studies in SI units with what they found."""
-    names = "\n".join(exhibit.name for exhibit in shown)
+    names = "\n".join([*(f"../{page}" for page in FOUND), *(exhibit.name for exhibit in shown)])
+    found = ", ".join(f"[{title}](../{page}.md)" for page, title in FOUND.items())
     groups = {exhibit.group: [each for each in shown if each.group == exhibit.group] for exhibit in shown}
     sections = [
         f"## {group}\n\n{{.cards}}\n{''.join(map(Exhibit.card, inside))}" for group, inside in groups.items()
@@ -131,7 +137,7 @@ def index(shown: list[Exhibit]) -> str:
     return f"""# Gallery
 
 What have others computed? Each picture leads to a page with the answer, the study and what it prints.
-`python docs/gallery/make.py` runs them all again.
+`python docs/gallery/make.py` runs them all again. What many studies found together: {found}.
 
 ```{{toctree}}
 :hidden:

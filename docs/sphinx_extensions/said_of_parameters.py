@@ -18,6 +18,7 @@ COMMON = {
     "drive": "the load along the belt",
     "transverse": "the motion across the belt",
     "load": "across the belt",
+    "body": "its spring and dashpot where they are not linear",
     "slip": "prescribed, along the belt",
     "transverse_slip": "prescribed, across the belt",
     "belt_vibration": "of the belt",

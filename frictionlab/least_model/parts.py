@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
@@ -11,11 +12,14 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.laws.stribeck_bristle import StribeckBristle
 from frictionlab.least_model.lesser import CannotGo, LesserModel
-from frictionlab.scene.scene import Scene
+from frictionlab.scene.scene import Body, Scene
 from frictionlab.scene.signals import FULL_TURN, signal_of
 from frictionlab.scene.waveforms import SINE
 
 SHAKING = "drive", "transverse.load", "slip", "transverse_slip", "belt_vibration", "normal_load_variation"
+BENDING = "cubic_stiffness", "amplitude_damping", "curvature"
+REMEMBERING = "relaxation", "fractional"
+"""Keys of ``body`` that make it nonlinear, and that make it remember."""
 SIZES = "unbalance", "velocity_amplitude", "amplitude"
 NOTHING_ELSE = "nothing else shakes the body: without the change of its normal load nothing moves it"
 TURNED = "{}: its part along the belt points backward, and no waveform says so"
@@ -50,6 +54,18 @@ def steady_normal_load(model: LesserModel) -> LesserModel | None:
         changes["belt_vibration.frequency"] = part.frequency * (belt.frequency_ratio or 1.0)
         changes["belt_vibration.frequency_ratio"] = None
     return model.with_scene(**changes)
+
+
+def without_term(name: str) -> Callable[[LesserModel], LesserModel | None]:
+    """The body without this key of ``body``."""
+
+    def taken(model: LesserModel) -> LesserModel | None:
+        terms, without = model.scene.body_terms, Body.model_fields[name].default
+        if name not in terms:
+            return None
+        return model.with_scene(**({"body": None} if terms == [name] else {f"body.{name}": without}))
+
+    return taken
 
 
 def without_load_across(model: LesserModel) -> LesserModel | None:

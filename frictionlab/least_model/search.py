@@ -12,6 +12,8 @@ from frictionlab.least_model.answers import Change, Curves, change_of_curve
 from frictionlab.least_model.lesser import CannotGo, LesserModel, Taken
 from frictionlab.least_model.motion import cut_to, friction_free_of, orders, slipping
 from frictionlab.least_model.parts import (
+    BENDING,
+    REMEMBERING,
     on_a_line,
     rigid,
     sines,
@@ -19,6 +21,7 @@ from frictionlab.least_model.parts import (
     undamped_bristles,
     without_fall,
     without_load_across,
+    without_term,
     without_viscosity,
 )
 from frictionlab.mistakes.notes import WrongValues
@@ -49,7 +52,9 @@ def things(rests: bool) -> tuple[Thing, ...]:
         Thing("waveform", "waveform", 1, sines),
         Thing("load variation", "normal load", 1, steady_normal_load),
         Thing("load across the belt", "across", 1, without_load_across),
-        Thing("transverse motion", "across", 1000, on_a_line),
+        Thing("transverse motion", "across", 2000, on_a_line),
+        *(Thing(name.replace("_", " "), name, 1, without_term(name)) for name in BENDING),
+        *(Thing(f"{name} of the body", name, 400, without_term(name)) for name in REMEMBERING),
         Thing("bristle damping", "bristles", 1, undamped_bristles),
         Thing("contact compliance", "bristles", 400, rigid),
         Thing("fall of friction with speed", "fall", 1, without_fall),

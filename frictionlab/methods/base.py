@@ -145,6 +145,12 @@ class Method(Record, ABC):
         return []
 
 
+def beyond_linear(name: str, scene: Scene, taken: Sequence[str] = ()) -> str | None:
+    """Why a method of this name cannot do the body of a scene, None where it can; taken: keys that it takes."""
+    others = [f"body.{term}" for term in scene.body_terms if term not in taken]
+    return f"{name} does not take {' and '.join(others)}" if others else None
+
+
 REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})
 """The names of those that solve a simpler problem, known without loading them."""
 

@@ -122,11 +122,27 @@ def _motion(n: _Numbers, axis: int) -> Markup:
     """Inertia, dashpot, spring and friction against the load."""
     place, first, second = (Markup("<i>{}</i><sub>{}</sub>").format(each, axis) for each in n.letters)
     mass, dashpot, spring = _coefficients(n, axis)
-    terms = [_times(mass, second), _times(dashpot, first), _times(spring, place)]
+    bent, stretched, more = _bends(n, place, first) if axis == 1 else (first, place, [])
+    terms = [_times(mass, second), _times(dashpot, bent), _times(spring, stretched), *more]
     normal = Markup("<i>N</i>") if n.has("normal_load_variation") else _load(n)
     friction = _times(normal, Markup("<i>T</i><sub>{}</sub>").format(axis))
     left = Markup(" + ").join(each for each in [*terms, friction] if each)
     return Markup("{} = {}").format(left, Markup(" + ").join(_loads(n, axis)) or "0")
+
+
+def _bends(n: _Numbers, place: Markup, rate: Markup) -> tuple[Markup, Markup, list[Markup]]:
+    """What dashpot and spring along the belt are multiplied by, and the terms beside them."""
+    by, strained = "_{}" if n.in_si else "", f"body.curvature{'_per_m' if n.in_si else ''}"
+    powers = {
+        f"body.cubic_stiffness{by.format('N_per_m3')}": Markup("{}<sup>3</sup>").format(place),
+        f"body.amplitude_damping{by.format('N_s_per_m3')}": Markup("{}<sup>2</sup> {}").format(place, rate),
+    }
+    more = [_times(n.product(path), power) for path, power in powers.items() if n.has(path)]
+    if not n.has(strained) or n.fixed(strained) == 0.0:
+        return rate, place, more
+    once, twice = (_times(n.product(strained, factor=factor), place) for factor in (1.0, 2.0))
+    rate = Markup("(1 + {})<sup>2</sup> {}").format(twice, rate)
+    return rate, Markup("(1 + {}) (1 + {}) {}").format(once, twice, place), more
 
 
 def _coefficients(n: _Numbers, axis: int) -> tuple[Markup, Markup, Markup]:

@@ -16,7 +16,9 @@ from frictionlab.mistakes.notes import Unfit
 from frictionlab.scene.parts import ScenePart
 from frictionlab.units.text import in_units, quantity_in
 
-_SUFFIX = re.compile(r"_(N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|kg_m|kg|N|m|J|s)$")
+_SUFFIX = re.compile(
+    r"_(N_s_per_m3|N_per_m3|N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|(?<!_sq_)per_m|kg_m|kg|N|(?<!_per_)m|J|s)$"
+)
 """What the key of a number, or the name of a result, ends in: its unit."""
 _WITHOUT_SUFFIX = {"phase": "deg", "direction": "deg", "amplitude": "", "damping_ratio": ""}
 """The units of the other numbers."""
@@ -66,7 +68,8 @@ def unit_of(name: str) -> str | None:
     found = _SUFFIX.search(name)
     if not found:
         return _WITHOUT_SUFFIX.get(name)
-    return re.sub(r"(?<=[a-z])(\d)", r"^\1", found[1].replace("_per_", "/").replace("_", " "))
+    unit = re.sub("^per_", "1/", found[1]).replace("_per_", "/").replace("_", " ")
+    return re.sub(r"(?<=[a-z])(\d)", r"^\1", unit)
 
 
 def in_si(key: str, name: str, value: Any) -> Any:

@@ -8,11 +8,20 @@ from typing import Any, NamedTuple
 from frictionlab.scene.varying import packed
 
 
+class Bends(NamedTuple):
+    """What a body adds along x1 not linearly: spring_2 x^2 + spring_3 x^3 + (dashpot_1 x + dashpot_2 x^2) x'."""
+
+    spring_2: float
+    spring_3: float
+    dashpot_1: float
+    dashpot_2: float
+
+
 class Mass(NamedTuple):
     """The numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau)).
 
     varying: empty where these forces are all that changes in time; else all of it, and the forces are the harmonics
-    of the loads at this frequency.
+    of the loads at this frequency. bends: empty where springs and dashpots are linear.
     """
 
     damping: float
@@ -24,6 +33,7 @@ class Mass(NamedTuple):
     force: complex
     transverse_force: complex
     varying: Any = ()
+    bends: Any = ()
 
 
 def for_kernels(mass: Mass) -> Mass:

@@ -21,10 +21,14 @@ from frictionlab.scene.as_written import AsWritten
 from frictionlab.scene.changed import changed
 from frictionlab.scene.parts import (
     BeltVibration,
+    Body,
     Drive,
+    Fractional,
     Initial,
     Load,
     NormalLoadVariation,
+    Order,
+    Relaxation,
     ScenePart,
     Slip,
     Transverse,
@@ -99,9 +103,12 @@ class _Shaken(PartInSI):
         return self
 
 
-def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI) -> Any:
-    """The SI form of a part that has no keys of its own in SI units, but for those of its base."""
-    kinds = get_type_hints(part, include_extras=True)
+def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI, **inside: Any) -> Any:
+    """The SI form of a part that has no keys of its own in SI units, but for those of its base.
+
+    inside: the SI forms of the parts inside it.
+    """
+    kinds = get_type_hints(part, include_extras=True) | {name: kind | None for name, kind in inside.items()}
     fields: dict[str, Any] = {
         key: (kinds[name], ... if field.is_required() else field.default)
         for name, field in part.model_fields.items()
@@ -124,8 +131,32 @@ def _documented(part: type[ScenePart], name: str, example: str) -> str:
     return f"{text}\n\n    >>> import frictionlab as fl\n    >>> fl.{name}({example})\n    {name}({example})\n    "
 
 
+class DimensionalFractional(PartInSI):
+    """A force coefficient*D^order x1 beside spring and dashpot, in SI units.
+
+    coefficient_N_sq_per_m [N s^order/m], > 0: of the derivative, (i omega)^order of a sine (Weyl).
+    order [-], 0 < order <= 1: of the derivative.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalFractional(coefficient_N_sq_per_m=2, order=0.5)
+    DimensionalFractional(coefficient_N_sq_per_m=2, order=0.5)
+    """
+
+    nondimensional: ClassVar[type[ScenePart]] = Fractional
+
+    coefficient_N_sq_per_m: Positive
+    order: Order
+
+    def scaled(self, units: Units) -> dict[str, Any]:
+        """The values given, as those of the nondimensional part."""
+        unit = units.force / units.length * units.time**self.order
+        return {"coefficient": self.coefficient_N_sq_per_m / unit, "order": self.order}
+
+
 if TYPE_CHECKING:
+    DimensionalBody = PartInSI
     DimensionalDrive = PartInSI
+    DimensionalRelaxation = PartInSI
     DimensionalLoad = PartInSI
     DimensionalBeltVibration = PartInSI
     DimensionalNormalLoadVariation = PartInSI
@@ -139,6 +170,13 @@ else:
         BeltVibration, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken
     )
     DimensionalNormalLoadVariation = _in_si(NormalLoadVariation, "amplitude=0.3, frequency_rad_per_s=300")
+    DimensionalRelaxation = _in_si(Relaxation, "stiffness_N_per_m=50, time_s=0.01")
+    DimensionalBody = _in_si(
+        Body,
+        "cubic_stiffness_N_per_m3=5000",
+        relaxation=DimensionalRelaxation,
+        fractional=DimensionalFractional,
+    )
     DimensionalInitial = _in_si(Initial, "x_m=0.001")
     DimensionalSlip = _in_si(Slip, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken)
     DimensionalTransverseSlip = _in_si(
@@ -215,6 +253,7 @@ class Dimensional(AsWritten):
     belt_speed_m_per_s: Finite
     drive: DimensionalDrive | None = None
     transverse: DimensionalTransverse | None = None
+    body: DimensionalBody | None = None
     slip: DimensionalSlip | None = None
     transverse_slip: DimensionalTransverseSlip | None = None
     belt_vibration: DimensionalBeltVibration | None = None

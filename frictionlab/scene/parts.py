@@ -8,12 +8,24 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, Record
-from frictionlab.scene.units import FORCE, FREQUENCY, LENGTH, UNBALANCE, VELOCITY
+from frictionlab.scene.body import Bends
+from frictionlab.scene.units import (
+    CUBIC_DAMPING,
+    CUBIC_STIFFNESS,
+    CURVATURE,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    STIFFNESS,
+    TIME,
+    UNBALANCE,
+    VELOCITY,
+)
 from frictionlab.scene.waveforms import SINE, Ratio, Waveform
 
 
@@ -122,6 +134,82 @@ class Transverse(ScenePart):
     natural_frequency: Positive
     damping_ratio: NonNegative
     load: Load | None = None
+
+
+Order = Annotated[Positive, Field(le=1.0)]
+"""Of a derivative, in (0, 1]."""
+
+
+class Relaxation(ScenePart):
+    """A spring in series with a dashpot, beside spring and dashpot of the body: the standard linear solid.
+
+    It adds the force stiffness*y, y' = x1' - y/time.
+
+    stiffness [K_1], > 0: of the spring, felt by fast motion.
+    time [1/omega_1], > 0: in which its force relaxes.
+    order [-], 0 < order <= 1: of the derivative of y; below 1 the fractional Zener model.
+
+    >>> import frictionlab as fl
+    >>> fl.Relaxation(stiffness=0.5, time=1)
+    Relaxation(stiffness=0.5, time=1)
+    """
+
+    stiffness: Annotated[Positive, STIFFNESS]
+    time: Annotated[Positive, TIME]
+    order: Order = 1.0
+
+
+class Fractional(ScenePart):
+    """A force coefficient*D^order x1 beside spring and dashpot: between a spring (order 0) and a dashpot (order 1).
+
+    coefficient [K_1/omega_1^order], > 0: of the derivative, (i omega)^order of a sine (Weyl).
+    order [-], 0 < order <= 1: of the derivative.
+
+    >>> import frictionlab as fl
+    >>> fl.Fractional(coefficient=0.2, order=0.5)
+    Fractional(coefficient=0.2, order=0.5)
+    """
+
+    coefficient: Positive
+    order: Order
+
+
+class Body(ScenePart):
+    """What of the body is no linear spring or dashpot; it acts along x1, beside spring 1 and damping_ratio.
+
+    cubic_stiffness [K_1/L^2]: k3 of the force k3 x1^3; a spring that hardens, or softens where negative.
+    amplitude_damping [K_1/(omega_1 L^2)], >= 0: c of the force c x1^2 x1'.
+    curvature [1/L]: r; spring and dashpot follow the strain x1 + r x1^2, their force is
+    x1 + 3 r x1^2 + 2 r^2 x1^3 + 2 damping_ratio (1 + 2 r x1)^2 x1' (Amabili, 2018).
+    relaxation: a spring in series with a dashpot, the standard linear solid; none where left out.
+    fractional: a force between those of a spring and a dashpot; none where left out.
+
+    >>> import frictionlab as fl
+    >>> fl.Body(cubic_stiffness=0.01, amplitude_damping=0.02)
+    Body(cubic_stiffness=0.01, amplitude_damping=0.02)
+    """
+
+    cubic_stiffness: Annotated[Finite, CUBIC_STIFFNESS] = 0.0
+    amplitude_damping: Annotated[NonNegative, CUBIC_DAMPING] = 0.0
+    curvature: Annotated[Finite, CURVATURE] = 0.0
+    relaxation: Relaxation | None = None
+    fractional: Fractional | None = None
+
+    def bends(self, damping_ratio: float) -> Any:
+        """What it adds to the force of spring and dashpot; empty where that is nothing."""
+        r = self.curvature
+        bends = Bends(
+            spring_2=3.0 * r,
+            spring_3=self.cubic_stiffness + 2.0 * r**2,
+            dashpot_1=8.0 * damping_ratio * r,
+            dashpot_2=self.amplitude_damping + 8.0 * damping_ratio * r**2,
+        )
+        return bends if any(bends) else ()
+
+    @property
+    def terms(self) -> list[str]:
+        """The keys that add something."""
+        return [name for name in type(self).model_fields if getattr(self, name)]
 
 
 class _Vibration(ScenePart):

@@ -22,7 +22,7 @@ def problems_of_parts(scene: Any) -> list[str]:
 
 def problems_of_slip(scene: Any) -> list[str]:
     """Of a prescribed slip, and of what shakes its normal load."""
-    for name in ("damping_ratio", "drive", "transverse", "initial", "belt_vibration"):
+    for name in ("damping_ratio", "drive", "transverse", "body", "initial", "belt_vibration"):
         if getattr(scene, name) is not None:
             return [f"{name}: leave it out with a prescribed slip"]
     if scene.transverse_slip is not None and scene.slip is not None and scene.slip.direction is not None:

@@ -7,7 +7,7 @@ L, force K_1 L, velocity omega_1 L, energy K_1 L^2. The equations of motion are 
     x2'' + 2 damping_ratio_2 omega_r x2' + omega_r^2 x2 + normal_load T2 = load along x2,
 
 with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2'), or against a belt that vibrates
-and under a normal load that changes where the scene says so.
+and under a normal load that changes where the scene says so; ``body`` adds what is not linear, or remembers.
 """
 
 from __future__ import annotations
@@ -23,10 +23,13 @@ from frictionlab.scene.changed import changed, with_values
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
     BeltVibration,
+    Body,
     Drive,
+    Fractional,
     Initial,
     Load,
     NormalLoadVariation,
+    Relaxation,
     ScenePart,
     Slip,
     Transverse,
@@ -39,10 +42,13 @@ from frictionlab.scene.waveforms import SINE, form_of
 
 __all__ = [
     "BeltVibration",
+    "Body",
     "Drive",
+    "Fractional",
     "Initial",
     "Load",
     "NormalLoadVariation",
+    "Relaxation",
     "Scene",
     "Slip",
     "Transverse",
@@ -78,6 +84,7 @@ class Scene(ScenePart):
     belt_speed: Finite
     drive: Drive | None = None
     transverse: Transverse | None = None
+    body: Body | None = None
     slip: Slip | None = None
     transverse_slip: TransverseSlip | None = None
     belt_vibration: BeltVibration | None = None
@@ -142,6 +149,11 @@ class Scene(ScenePart):
         """Whether no load drives the mass: the period of its motion is then unknown."""
         shaken = self.drive or self.belt_vibration or self.normal_load_variation
         return self.degrees_of_freedom > 0 and shaken is None
+
+    @property
+    def body_terms(self) -> list[str]:
+        """The keys of ``body`` that add something to its linear spring and dashpot."""
+        return [] if self.body is None else self.body.terms
 
     @property
     def start(self) -> Initial:
@@ -221,6 +233,7 @@ class Scene(ScenePart):
             force=along,
             transverse_force=aside,
             varying=shaking.varying,
+            bends=self.body.bends(self.damping_ratio) if self.body is not None else (),
         )
 
     def motion(self) -> Motion:

@@ -14,12 +14,19 @@ from frictionlab.quantities import Dimension, Record, dimensions
 
 LENGTH, VELOCITY, FREQUENCY = Dimension(length=1), Dimension(length=1, time=-1), Dimension(time=-1)
 FORCE, UNBALANCE = Dimension(force=1), Dimension(force=1, time=2)
+TIME, STIFFNESS, CURVATURE = Dimension(time=1), Dimension(force=1, length=-1), Dimension(length=-1)
+CUBIC_STIFFNESS, CUBIC_DAMPING = Dimension(force=1, length=-3), Dimension(force=1, length=-3, time=1)
 SUFFIXES = {
     LENGTH: "m",
     VELOCITY: "m_per_s",
     FREQUENCY: "rad_per_s",
     FORCE: "N",
     UNBALANCE: "kg_m",
+    TIME: "s",
+    STIFFNESS: "N_per_m",
+    CURVATURE: "per_m",
+    CUBIC_STIFFNESS: "N_per_m3",
+    CUBIC_DAMPING: "N_s_per_m3",
 }
 """What the key of a number of each dimension ends in where a scene is in SI units."""
 

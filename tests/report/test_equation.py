@@ -58,6 +58,15 @@ def test_what_is_swept_stays_a_symbol() -> None:
     assert told(LINE, **swept) == ["ẍ1 + 2 β1 ẋ1 + x1 + γ2 T1 = 10 Ω2 sin(Ω τ)", "v1 = ẋ1 − vb"]
 
 
+def test_springs_and_dashpots_that_are_not_linear_are_told() -> None:
+    bent = {"cubic_stiffness": 0.2, "amplitude_damping": 0.3, "curvature": 0.05}
+    assert told(LINE | {"body": bent})[0] == (
+        "ẍ1 + 0.2 (1 + 0.1 x1)2 ẋ1 + (1 + 0.05 x1) (1 + 0.1 x1) x1 + 0.2 x13 + 0.3 x12 ẋ1 + 10 T1 = 22.5 sin(1.5 τ)"
+    )
+    swept = told(LINE | {"body": bent}, **{"body__cubic_stiffness": [0, 1]})[0]
+    assert " + k3 x13 + " in swept
+
+
 def test_the_plane_has_an_equation_for_each_direction() -> None:
     assert told(PLANE) == [
         "ẍ1 + 0.2 ẋ1 + x1 + 10 T1 = 22.5 sin(1.5 τ)",

@@ -44,8 +44,9 @@ EIGHT: list[tuple[Callable[[], object], str]] = [
     (lambda: SCENE.with_(normal_load=-3), "Scene: normal_load: must be > 0, got -3"),
     (
         lambda: fl.Scene(**GIVEN, initail={"x": 1}),
-        "Scene: initail: unknown key; allowed: damping_ratio, normal_load, belt_speed, drive, transverse, slip, "
-        "transverse_slip, belt_vibration, normal_load_variation, initial, dimensional\n    did you mean 'initial'?",
+        "Scene: initail: unknown key; allowed: damping_ratio, normal_load, belt_speed, drive, transverse, body, "
+        "slip, transverse_slip, belt_vibration, normal_load_variation, initial, dimensional\n"
+        "    did you mean 'initial'?",
     ),
     (
         lambda: fl.steady_state(SCENE, LAW, method="shoting"),

@@ -334,7 +334,7 @@ def test_a_mistake_shows_its_place_its_line_a_caret_and_a_likely_meaning(written
 
     assert str(caught.value).splitlines() == [
         "study.yaml:7:3: scene.belt_sped: unknown key; allowed: damping_ratio, normal_load, belt_speed, "
-        "drive, transverse, slip, transverse_slip, belt_vibration, normal_load_variation, initial, dimensional",
+        "drive, transverse, body, slip, transverse_slip, belt_vibration, normal_load_variation, initial, dimensional",
         "      belt_sped: 5",
         "      ^",
         "    did you mean 'belt_speed'?",
@@ -511,6 +511,7 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
     made, nonsense = schema(), {"zzz": 1}
     shared = "drive", "belt_vibration", "normal_load_variation", "initial"
     parts = nonsense | dict.fromkeys(shared, nonsense) | {"transverse": nonsense | {"load": nonsense}}
+    parts |= {"body": nonsense | dict.fromkeys(("relaxation", "fractional"), nonsense)}
     slips = dict.fromkeys(("slip", "transverse_slip"), nonsense)
     probe = good() | nonsense | {"scene": good()["scene"] | parts | slips}
     si = good() | {"scene": {"dimensional": parts | slips}}
@@ -518,7 +519,7 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
     assert set(_allowed(probe, "zzz")) == set(made["properties"])
     scene = _keys_of(made, made["properties"]["scene"])
     both = ["", "drive.", "transverse.", "transverse.load.", "initial."]
-    both += ["belt_vibration.", "normal_load_variation."]
+    both += ["belt_vibration.", "normal_load_variation.", "body.", "body.relaxation.", "body.fractional."]
     found = {
         part + key
         for part in [*both, "slip.", "transverse_slip."]

@@ -13,7 +13,7 @@ from pydantic import Field, field_validator
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Multipliers, Status
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Multipliers, Status, beyond_linear
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.orbit import make_orbits
@@ -105,6 +105,7 @@ class Exact(Method):
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
         prescribed = scene.degrees_of_freedom == 0 and law.memory_kind == "bristle"
         reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
+        reason = beyond_linear(self.name, scene) or reason
         return suggest_shooting(reason, scene, law) if reason else None
 
     def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import beyond_linear
 from frictionlab.methods.march.error import FEWEST_LAPS, WORK
 from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, steppers_of
@@ -44,6 +45,9 @@ class Request:
 def reasons_against(asked: Request) -> Iterator[str]:
     """Every reason why march cannot do what is asked, the first to be mended first."""
     law, scene = asked.law, asked.scene
+    if reason := beyond_linear("march", scene):
+        yield reason
+        return
     if not steppers_of(asked.kind):
         yield "march needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         return

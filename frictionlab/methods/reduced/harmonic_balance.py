@@ -11,6 +11,7 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.base import beyond_linear
 from frictionlab.methods.reduced.bristle import bristle_refusal, bristles
 from frictionlab.methods.reduced.common import (
     Modelled,
@@ -83,6 +84,8 @@ class HarmonicBalance(OfOneModel):
         if scene.degrees_of_freedom == 0:
             reason = "harmonic_balance needs a mass: with a prescribed slip there is no motion to solve for"
             return suggest_shooting(reason, scene, law)
+        if terms := beyond_linear(self.name, scene):
+            return suggest_shooting(terms, scene, law)
         steady = steadied(scene)
         if steady is None:
             return suggest_shooting(NOT_ONE_SINE, scene, law)

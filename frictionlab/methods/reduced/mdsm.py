@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers
+from frictionlab.methods.base import Answers, beyond_linear
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip, piece_at
 from frictionlab.methods.reduced.common import (
@@ -66,6 +66,8 @@ class Mdsm(OfOneModel):
             return "mdsm needs friction without memory (a sliding law)"
         if scene.degrees_of_freedom == 0:
             return None
+        if reason := beyond_linear(self.name, scene):
+            return reason
         if scene.undriven:
             return "mdsm needs a drive: it averages over the driven motion"
         steady = steadied(scene)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, FoundState, Method
+from frictionlab.methods.base import Answers, FoundState, Method, beyond_linear
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
@@ -77,6 +77,8 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
+        if reason := beyond_linear(self.name, scene):
+            return reason
         if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):

@@ -22,6 +22,7 @@ myst_heading_anchors = 4
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
+add_module_names = False
 
 html_theme = "furo"
 html_title = f"frictionlab {version}"

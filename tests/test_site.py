@@ -57,7 +57,7 @@ def test_what_scrolls_is_reached_by_keyboard(pages: dict[str, str]) -> None:
 
 def test_python_s_pages_tell_the_type_of_every_parameter(pages: dict[str, str]) -> None:
     text = pages["api"] + pages["api_scenes"]
-    shared = text.partition('id="shared-parameters"')[2].partition("</table>")[0]
+    shared = "".join(each.partition("</table>")[0] for each in text.split('id="shared-')[1:])
     entries = dict(re.findall(r'id="frictionlab\.(\w+)">(.*?)(?=<dt class="sig|</section>)', text, re.DOTALL))
     shown = {
         name: entry

@@ -24,9 +24,16 @@ CODE = re.compile(r"(``[^`]+``)")
 MARKS = re.compile(r"([\\*|_`])")
 UNIT = r"(?: \[[^\]]*\])?"
 RAISED = re.compile(r"(?<![\w`.])([A-Z]\w*(?:Error|Plugin|Values)|Interrupted)\b")
+BY_ALL = re.compile(
+    r"(?:^|,\s+)ValueError or TypeError for what\s+makes no\s+sense(?:, BrokenPlugin)?(?=\.$)"
+)
+"""What every function raises, which the page says once."""
 LONGEST_OF_MEMBERS = 3
 """Lines: a longer example of a method or property has a setting of its own, which its class shows."""
-MADE_BY_OTHERS = "SteadyState", "Run", "Comparison", "Needs", "Study", "FittedLaws"
+MADE_BY_OTHERS = {"SteadyState", "Run", "Comparison", "Needs", "Study", "FittedLaws"} | {
+    "Equivalent",
+    "Experiments",
+}
 """Classes that a user is handed: what they hold is told in words."""
 
 
@@ -35,7 +42,7 @@ def _process(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: l
     handed = what == "class" and name.rpartition(".")[2] in MADE_BY_OTHERS
     parameters = {} if handed or what not in ("function", "class", "method") else _parameters(obj)
     text, entries = _without_entries(text, list(parameters))
-    shared = {each for each in parameters if what == "function" and _says_nothing_new(each, entries)}
+    shared = {each for each in parameters if _says_nothing_new(each, entries, SHARED.get(what, {}))}
     table = _table(parameters, entries, shared) if (entries if what == "method" else parameters) else []
     text, raised = _without_raised(text)
     if what in ("method", "property") and len(example) > LONGEST_OF_MEMBERS:
@@ -96,8 +103,10 @@ def _without_raised(text: str) -> tuple[str, list[str]]:
     """The text without its sources; what is raised, linked to the reasons."""
     told = re.sub(r"(?:^|\n|(?<=\. ))(?=Sources?: |Raises [A-Z])", "\n\n", text)
     paragraphs = re.split(r"\n\n+", told)
-    raised = [each.removeprefix("Raises ") for each in paragraphs if each.startswith("Raises ")]
-    linked = [RAISED.sub(r":ref:`\1 <what-is-raised>`", each) for each in raised]
+    raised = [
+        BY_ALL.sub("", each.removeprefix("Raises ")) for each in paragraphs if each.startswith("Raises ")
+    ]
+    linked = [RAISED.sub(r":ref:`\1 <what-is-raised>`", each) for each in raised if each != "."]
     left_out = ("Raises ", "Source: ", "Sources: ")  # what is computed, and from whom, is in theory
     kept = "\n\n".join(each for each in paragraphs if not each.startswith(left_out))
     return kept, [line for each in linked for line in [f"**Raises** {each}", ""]]
@@ -127,14 +136,20 @@ SYMBOLS = {
 SYMBOLS |= {"beta_1": "β₁", "beta_2": "β₂", "gamma^2": "γ²"}
 
 
-def _says_nothing_new(name: str, entries: dict[str, tuple[str, str, str]]) -> bool:
-    """Whether the table of what many functions take says all of this parameter."""
+def _says_nothing_new(name: str, entries: dict[str, tuple[str, str, str]], shared: dict[str, str]) -> bool:
+    """Whether the table of what many take says all of this parameter."""
     _, _, meaning = entries.get(name, ("", "", ""))
-    return name in SHARED and (not meaning or meaning.startswith(SHARED[name]))
+    return name in shared and (not meaning or meaning.startswith(shared[name]))
 
 
-SHARED = {"scene": "", "law": "", "laws": "", "method": "", "methods": "", "executor": "", "progress": ""}
-SHARED |= {"tolerance": "absolute", "columns": "result columns"}
+OF_FUNCTIONS = dict.fromkeys(("scene", "law", "laws", "method", "methods", "executor", "progress"), "")
+OF_FUNCTIONS |= {"tolerance": "absolute", "columns": "result columns"}
+OF_CLASSES = dict.fromkeys(
+    ("phase", "waveform", "direction", "frequency_ratio", "stribeck_speed", "viscosity"), ""
+)
+OF_CLASSES |= dict.fromkeys(("stiffness", "presliding_length", "contact_stiffness"), "exactly one")
+OF_CLASSES |= dict.fromkeys(("damping", "contact_damping", "planar", "stribeck_exponent"), "-")
+SHARED = {"function": OF_FUNCTIONS, "class": OF_CLASSES}
 """By parameter what an entry begins with that needs no row of its own; none is as good."""
 
 
@@ -155,11 +170,10 @@ def _table(
         rows.append([names, _type(each), _plain(limits), _plain(" ".join(meaning.split()))])
     heads = ["parameter", "type", "unit, range", "meaning"]
     columns = [0, 1, *(column for column in (2, 3) if any(row[column] for row in rows))]
-    others = (
-        [f"{'Others are' if rows else 'All are'} :ref:`the shared ones <shared-parameters>`."]
-        if shared
-        else []
-    )
+    own = ", ".join(f"``{name}``" for name in parameters if name in shared.intersection(OF_CLASSES))
+    said = f"{own}: :ref:`as in others <shared-by-classes>`." if own else ""
+    said = said or f"{'Others' if rows else 'All'} are :ref:`the shared ones <shared-parameters>`."
+    others = [said] if shared else []
     if not rows:
         return others
     lines = [".. list-table::", "   :header-rows: 1", "   :class: parameters", ""]

@@ -30,21 +30,11 @@ COMMON = {
     "mu": "friction coefficient in steady sliding",
     "mu_kinetic": "friction coefficient in quick sliding, without viscosity",
     "mu_static": "friction coefficient at rest",
-    "stribeck_speed": "of the fall from the static to the kinetic coefficient",
-    "stribeck_exponent": "of that fall",
-    "viscosity": "friction coefficient per slip speed",
-    "stiffness": "friction coefficient per deflection",
-    "presliding_length": "deflection in steady sliding; in place of the stiffness",
-    "contact_stiffness": "stiffness times normal load; in place of the stiffness",
-    "damping": "friction coefficient per rate of deflection",
-    "contact_damping": "damping times normal load; in place of the damping",
-    "planar": "how bristles are carried to the plane",
 }
 """Of parameters that many have, where a docstring does not say more."""
 
 SHORT = {
     "progress": "tells on stderr how far it is; None: in a terminal or notebook",
-    "waveform": "sine where left out, square, triangle, sawtooth or {harmonics: [...]}",
 }
 """In place of what docstrings say again and again."""
 

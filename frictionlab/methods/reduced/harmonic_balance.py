@@ -46,12 +46,8 @@ class HarmonicBalance(OfOneModel):
     friction, or nothing; true for 2 harmonics or more where left out. Without it the mean is off by the order
     1/harmonics, with it by about harmonics^-3 (methods/reduced/reversals.py).
 
-    Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
-    belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,
-    stick included, do to the mean: the distance to that of ``exact`` or ``shooting``.
-
-    Bristle friction has a part in phase with the displacement as well, and both parts ask for a loop of the law at
-    every amplitude looked at (methods/reduced/bristle.py).
+    The error is the distance to the mean of ``exact`` or ``shooting``. Bristle friction has a part in phase with the
+    displacement as well, and asks for a loop of the law at every amplitude looked at (methods/reduced/bristle.py).
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
 

@@ -50,18 +50,11 @@ class Shooting(Method):
     """Shooting on the period map of any law, with whatever memory, on the line and in the plane.
 
     Integrates the deviation from the friction-free response by DOP853 with the instants of stick and release
-    resolved, and closes the orbit by Broyden's method with Newton and Picard steps where it stalls. The error comes
-    from a last map sixteen times finer: what it leaves open, carried to the mean by the contraction of monotone
-    friction, or by the mean's own change where friction falls with speed. There the orbit must attract, and starts
-    far from each other must reach it; otherwise the mean is not unique.
-    In the plane slip next to rest is stepped implicitly in polar coordinates where friction can hold the mass, and
-    wherever explicit steps fail, by Newton's method with the exact derivative.
-    Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
-    are solved for together by Rodas5P, as mass and any other memory are. In the plane, friction by axis leaves two
-    bodies of one direction, and a deflection along the slip ends at its limit: friction is then without memory.
+    resolved, bristles by Rodas5P or as a function of the way slid, planar slip next to rest implicitly in polar
+    coordinates, and closes the orbit by Broyden's method with Newton and Picard steps where it stalls. Where no
+    theorem makes the state unique it must attract, and starts far from each other must reach it.
     Without a drive the period is an unknown too, and the answer is the state reached from scene.initial: steady
-    sliding, a cycle or rest. A prescribed slip leaves a mass nothing to close: the mean is quadrature, or that of the
-    closed loop of the memory.
+    sliding, a cycle or rest. Under a prescribed slip the mean is quadrature, or that of the memory's closed loop.
 
     Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
 

@@ -14,8 +14,8 @@ author = project_copyright = "The frictionlab authors"
 version = release = version_of("frictionlab")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "docstrings", "finished_pages"]
-# for developers, read in the repository
-exclude_patterns = ["architecture.md", "tests.md"]
+# the first two are for developers, read in the repository, the last is a part of a page
+exclude_patterns = ["architecture.md", "tests.md", "equivalence.md"]
 
 myst_enable_extensions = ["dollarmath", "deflist", "attrs_block"]
 myst_heading_anchors = 4

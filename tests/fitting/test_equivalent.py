@@ -26,17 +26,47 @@ def test_a_model_among_itself_is_at_no_distance() -> None:
     assert found.distance <= found.distance_error + 1e-8
 
 
-def test_each_norm_is_least_for_its_own_numbers() -> None:
-    """Elastic contact under a slip that nothing brakes, against Coulomb friction that brakes its body."""
-    of = SCENE, fl.Coulomb(mu=0.4)
-    largest, rms = (
-        fl.equivalent(of, SOFT, belt_speed=SPEEDS, norm=norm, starts=2) for norm in ("largest", "rms")
-    )
-    at_rms = np.abs(rms.curves["of"] - rms.curves["among"]).max()
-    assert largest.distance < at_rms
-    assert rms.distance < largest.rms
-    assert largest.distance == pytest.approx(np.abs(largest.curves["of"] - largest.curves["among"]).max())
-    assert 0.005 < largest.distance < 0.05
+def test_a_slip_half_as_wide_again_is_found() -> None:
+    """Coulomb curves under a prescribed slip differ by their unit of belt speed."""
+    wider = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=75, frequency=1))
+    free = {"scene.slip.velocity_amplitude": (20, 200)}
+    found = fl.equivalent((wider, fl.Coulomb(mu=0.4)), (SLIP, fl.Coulomb(mu=0.4), free), SPEEDS, starts=2)
+
+    assert found.values["scene.slip.velocity_amplitude"] == pytest.approx(75, rel=1e-6)
+    assert found.distance < 1e-7
+
+
+@pytest.mark.parametrize(("norm", "mu", "distance"), [("largest", 0.2, 0.2), ("rms", 0.3, 0.4 * 0.1875**0.5)])
+def test_to_a_step_the_norms_are_nearest_with_other_numbers(norm: Any, mu: float, distance: float) -> None:
+    """Slip to and fro at one speed: no mean below it, mu above; beside slip that never turns round, always mu.
+
+    One of four belt speeds is below: the largest distance is least half way up, the root mean square at the average.
+    """
+    square = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=50, frequency=1, waveform="square"))
+    hardly = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=1, frequency=1))
+    among = hardly, fl.Coulomb(mu=0.3), {"mu": (0.1, 1.0)}
+    found = fl.equivalent((square, fl.Coulomb(mu=0.4)), among, [20, 60, 70, 80], norm, starts=2)
+
+    assert found.values["mu"] == pytest.approx(mu, abs=1e-6)
+    assert found.distance == pytest.approx(distance, abs=1e-7)
+    assert found.rms == pytest.approx(np.sqrt(np.mean((found.curves["among"] - found.curves["of"]) ** 2)))
+
+
+def test_the_stated_error_covers_what_a_fine_solve_finds() -> None:
+    """A Dahl body among LuGre bodies: both curves are integrated, neither is exact."""
+    lugre = fl.LuGre(mu_kinetic=0.35, presliding_length=1, damping=0.05)
+    laws = fl.Dahl(mu=0.4, presliding_length=2.0), lugre
+    found = fl.equivalent((SCENE, laws[0]), (SCENE, lugre, {"mu_kinetic": (0.2, 0.6)}), SPEEDS[::2], starts=1)
+    nearest = lugre.model_copy(update=found.values)
+    fine = [
+        fl.curve(SCENE, law, SPEEDS[::2], tolerance=1e-11, columns=["mean_friction"], progress=False)[
+            "mean_friction"
+        ]
+        for law in (laws[0], nearest)
+    ]
+    distance = np.abs(fine[0] - fine[1]).max()
+
+    assert 0.0 < abs(distance - found.distance) <= found.distance_error < 1e-7
 
 
 def test_numbers_are_found_anew_over_an_input() -> None:

@@ -10,6 +10,7 @@ import pytest
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from maxwell_slip import MaxwellSlip
 from memory_laws import Ageing
+from scipy.integrate import solve_ivp
 from scipy.optimize import newton
 
 import frictionlab as fl
@@ -180,6 +181,53 @@ def test_body_and_impedance_give_the_multiplier_of_a_small_vibration() -> None:
     state = fl.steady_state(scene, LUGRE, "shooting")
 
     assert state.floquet == pytest.approx(math.exp(2.0 * math.pi / 1.7 * decay), abs=1e-6)
+
+
+def multipliers(scene: fl.Scene, law: Any, time: float) -> Any:
+    """Of small motions about steady sliding over this time: central differences of the integrated body."""
+    speed, load = scene.belt_speed, scene.normal_load
+    bristle = isinstance(law, fl.LuGre)
+
+    def rates(_: float, state: Any) -> list[float]:
+        slip = state[1] - speed
+        dz = [law.rate(slip, state[2])] if bristle else []
+        friction = law.friction(slip, state[2], dz[0]) if bristle else law.sliding_vector(slip)
+        return [state[1], -2.0 * scene.damping_ratio * state[1] - state[0] - load * friction, *dz]
+
+    steady = law.sliding_friction(speed)
+    bent = [-(steady - law.viscosity * speed) / law.bristle_stiffness] if bristle else []
+    still = np.array([load * steady, 0.0, *bent])
+
+    def after(change: Any) -> Any:
+        return solve_ivp(rates, (0, time), still + change, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+
+    ways = 1e-4 * np.eye(len(still))
+    return np.linalg.eigvals(np.column_stack([(after(way) - after(-way)) / 2e-4 for way in ways]))
+
+
+def test_impedance_and_body_tell_whether_steady_sliding_is_stable() -> None:
+    """By Nyquist's criterion, and by the characteristic equation that multipliers above differences' noise obey."""
+    draw, stable = np.random.default_rng(5), []
+    omega = np.array([0.0, *np.geomspace(1e-3, 1e4, 4000)])
+    for place in range(20):
+        speed, load, peak = draw.uniform(0.3, 2), 10 ** draw.uniform(-0.5, 1), draw.uniform(0.4, 0.6)
+        falling: Any = {"mu_kinetic": 0.3, "mu_static": peak, "stribeck_speed": draw.uniform(0.5, 2)}
+        bristles = {"stiffness": draw.uniform(3, 30), "damping": draw.uniform(0, 0.3), "viscosity": 0.02}
+        law: Any = fl.LuGre(**falling, **bristles) if place % 2 else fl.Stribeck(**falling)
+        fed = -0.5 * load * fl.impedance(law, speed, 1.0).real
+        damping = max(draw.choice([0.5, 0.8, 1.2, 2]) * fed, 1e-3)
+        scene = fl.Scene(damping_ratio=damping, normal_load=load, belt_speed=speed)
+        answer = 1.0 - omega**2 + 1j * omega * (2.0 * damping + load * fl.impedance(law, speed, omega))
+        turned = np.unwrap(np.angle(answer))
+        found = multipliers(scene, law, 0.2)
+        contact = linearized(law, speed, across=False)
+        for s in np.log(found[np.abs(found) > 0.01].astype(complex)) / 0.2:
+            left = s * s + 2.0 * damping * s + 1.0 + load * s * complex(contact.impedance(np.array(s)))
+            assert abs(left) < 1e-5 * max(1.0, abs(s)) ** 2
+
+        stable.append(np.abs(found).max() < 1.0)
+        assert turned[-1] - turned[0] == pytest.approx(math.pi if stable[-1] else -math.pi, abs=0.01)
+    assert 5 <= sum(stable) <= 15
 
 
 class Bent(fl.SlidingLaw):

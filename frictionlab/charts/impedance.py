@@ -49,6 +49,6 @@ def impedance_figure(speeds: Any, frequencies: Any, values: Any) -> Figure:
             ylabel=r"imaginary part of $Z$: inertia, or stiffness below 0",
         )
         for line in (plane.axvline, plane.axhline):
-            line(0.0, color="0.6", linewidth=0.6, zorder=0)
+            line(0.0, color="0.5", linewidth=0.6, zorder=0)
         Sheet(figure, 2, 2).add_legend(entries)
     return figure

@@ -97,6 +97,24 @@ def harmonic_of_bristles(law: Any, size: float, belt_speed: float) -> complex:
     return complex(*(state[1:] - kept[4]))
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 0.9])
+def test_only_bristles_push_in_phase_with_the_slip_and_a_moving_belt_weakens_both_parts(ratio: float) -> None:
+    """Sulollari, van Dalen & Cabboi, section 4: Dahl friction has a part in phase and one in quadrature."""
+    rigid = fl.describing_function(fl.Coulomb(mu=1), 1, 1, ratio)
+    soft, stiff = (
+        fl.describing_function(fl.Dahl(mu=1, presliding_length=length), 1, 1, ratio)
+        for length in (1e-2, 1e-4)
+    )
+    printed = {0.0: (0.159, 1.26), 0.5: (0.148, 1.089), 0.9: (0.1, 0.521)}[
+        ratio
+    ]  # two in docs/dynamic_laws.md
+
+    assert (-soft.imag, soft.real) == pytest.approx(printed, abs=5.1e-4)
+    assert rigid == pytest.approx(4 / math.pi * math.sqrt(1 - ratio**2), abs=1e-10)
+    assert soft.imag / stiff.imag == pytest.approx(10, rel=0.1)  # as the root of the presliding length
+    assert abs(stiff.real - rigid.real) < 0.02 * abs(soft.real - rigid.real)
+
+
 @pytest.mark.parametrize("ratio", [0.0, 0.4])
 def test_damped_bristles_are_those_of_another_integrator(ratio: float) -> None:
     law = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stiffness=4, damping=0.3, viscosity=0.1)

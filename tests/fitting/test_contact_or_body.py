@@ -54,21 +54,21 @@ def test_the_stiffness_of_the_contact_is_that_of_the_body() -> None:
             assert found == pytest.approx(softness, rel=0.05)
 
 
-@pytest.mark.parametrize(("frequency", "stiffness"), [(1, 0.13), (1.5, 1.5), (2, 3.5), (4, 16)])
+@pytest.mark.parametrize(("frequency", "stiffness"), [(1, 0.12), (1.5, 1.3), (2, 3.1), (4, 15)])
 def test_the_nearest_contact_stiffness_in_shares_of_the_spring(frequency: float, stiffness: float) -> None:
-    length = nearest_found(body(frequency, 0.4), "largest").values["presliding_length"]
+    length = nearest_found(body(frequency, 0.4), "rms").values["presliding_length"]
 
     assert 0.4 * LOAD / length == pytest.approx(stiffness, rel=0.05)
 
 
 def test_a_second_frequency_decides() -> None:
-    length = nearest_found(body(1.5, 0.4), "largest").values["presliding_length"]
+    length = nearest_found(body(1.5, 0.4), "rms").values["presliding_length"]
     scene = body(3, 0.4)
     slip = slip_of(scene)[0]
 
     apart = curve_of(scene) - means(slip, fl.Dahl(mu=MU, presliding_length=length), SHARES * v_lin(scene))
 
-    assert np.abs(apart).max() == pytest.approx(0.20, abs=5e-3)
+    assert np.abs(apart).max() == pytest.approx(0.21, abs=5e-3)
 
 
 @pytest.mark.parametrize(

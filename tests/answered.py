@@ -11,10 +11,13 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.runner.solve import FROM_METHODS, number_columns
+from frictionlab.scene.scene import Scene
 
 
 def with_columns(method, scenes, law, tolerance):
-    """The answers of a method, with ``columns``."""
+    """The answers of a method, which refuses none of these scenes, or this one, with ``columns``."""
+    scenes = [scenes] if isinstance(scenes, Scene) else scenes
+    assert [method.refusal(one, law) for one in scenes] == [None] * len(scenes)
     return Answered(method.solve(scenes, law, tolerance), scenes)
 
 

@@ -50,3 +50,9 @@ def test_a_name_has_one_meaning() -> None:
 
 def test_names_with_two_meanings_get_fewer_in_the_rooms_of_kernels() -> None:
     assert len(_doubles()) <= MOST_OPEN
+
+
+def test_no_two_files_of_tests_have_one_name() -> None:
+    files = [path.name for path in Path(__file__).parent.rglob("test_*.py")]
+
+    assert sorted(set(files)) == sorted(files)  # else pytest collects one of them and stops at the other

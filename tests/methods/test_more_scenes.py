@@ -110,21 +110,6 @@ def test_no_error_of_any_method_is_too_small(method):
     assert accepted or method in ("harmonic_balance", "mdsm")
 
 
-def of_belt(scene: dict[str, Any], amplitude: float, phase: float) -> complex:
-    """The load by which a belt that vibrates as amplitude sin(omega tau + phase) replaces its drive, as a phasor."""
-    omega, damping = scene["drive"]["frequency"], 2.0 * scene["damping_ratio"]
-    return -amplitude * complex(damping, omega - 1.0 / omega) * np.exp(1j * phase)
-
-
-@pytest.mark.parametrize(("phase", "belt_speed"), [(0.0, 2.0), (70.0, -0.4), (200.0, 6.0)])
-def test_a_sine_of_the_belt_is_a_drive(phase, belt_speed):
-    """In the position less that of the belt: spring, dashpot and inertia of its motion are a load."""
-    shaken = line(belt_speed, {}, belt_vibration={"velocity_amplitude": 4.0, "phase": phase})
-    both = shaken["drive"]["amplitude"] + of_belt(shaken, 4.0, math.radians(phase))
-    driven = line(belt_speed, {"amplitude": abs(both), "phase": math.degrees(np.angle(both))})
-    assert mean(shaken) == pytest.approx(mean(driven), abs=1e-10)
-
-
 def test_a_slider_pulled_over_a_plate_is_the_scene_seen_from_the_plate():
     """By its own equations, with scipy: the far end of the spring moves evenly, the plate vibrates, no stick."""
     speed, mu, load, damping, swing, omega = 3.0, 0.4, 2.0, 0.2, 5.0, 1.4
@@ -179,22 +164,6 @@ def test_a_direction_is_two_loads(angle, waveform):
     one = {"amplitude": abs(along), "phase": 180.0 * (along < 0.0), "waveform": waveform}
     other = {"amplitude": abs(across), "phase": 180.0 * (across < 0.0), "waveform": waveform}
     assert mean(turned) == pytest.approx(mean(plane(3.0, one, other)), abs=1e-10)
-
-
-def test_a_triangle_is_the_limit_of_its_harmonics():
-    """The mean comes nearer as the third power of how many are kept, or faster."""
-    whole = mean(line(2.0, {"waveform": "triangle", "amplitude": 14.0}))
-    off = []
-    for count in (3, 15):
-        orders = range(1, 2 * count, 2)
-        sizes = [8.0 / math.pi**2 * (-1.0) ** ((order - 1) // 2) / order**2 for order in orders]
-        terms = [
-            {"order": order, "amplitude": abs(size), "phase": 180.0 * (size < 0.0)}
-            for order, size in zip(orders, sizes, strict=True)
-        ]
-        off.append(abs(mean(line(2.0, {"waveform": {"harmonics": terms}, "amplitude": 14.0})) - whole))
-    assert off[1] < off[0] / 5.0**2
-    assert off[1] < 1e-4
 
 
 @given(convergent())

@@ -18,7 +18,6 @@ from frictionlab.scene.waveforms import WAVE_SHAPES, Form, Term
 from frictionlab.theory import (
     friction_free_velocity,
     mean_prescribed_longitudinal,
-    mean_prescribed_pulsating,
 )
 from frictionlab.theory.linear import LinearOscillator
 from frictionlab.theory.piecewise import piecewise
@@ -43,16 +42,6 @@ def direction(
     return mean_direction(piecewise(slip, edges).minus(ratio), piecewise(normal, edges, 1.0))
 
 
-@pytest.mark.parametrize("waveform", WAVE_SHAPES)
-@given(phase=angles, ratio=st.floats(-0.99, 0.99) | st.sampled_from([0.0, 1.5, -2.0]))
-def test_the_mean_is_that_of_the_instants_at_which_slip_turns(
-    waveform: str, phase: float, ratio: float
-) -> None:
-    closed = float(mean_prescribed_longitudinal(ratio, waveform))
-
-    assert direction(waveform, phase, ratio).mean == pytest.approx(closed, abs=1e-13)
-
-
 @given(gap=st.floats(-12.0, -1.0), phase=angles)
 @example(gap=-11.793342179739893, phase=142.7570928030736)  # its phasor is rounded
 def test_the_error_covers_the_mean_of_a_sine_that_hardly_reverses(gap: float, phase: float) -> None:
@@ -74,15 +63,6 @@ def test_jumps_and_opposites_are_those_of_its_values(form: Form) -> None:
         assert sides[1] <= 1e-6
     elif not form.terms:
         assert sides[1] > 0.1
-
-
-@given(ratio=st.floats(-0.99, 0.99), amplitude=st.floats(0.0, 0.99), lead=angles, phase=angles)
-def test_a_load_that_pulsates_with_the_slip_drives_the_body(
-    ratio: float, amplitude: float, lead: float, phase: float
-) -> None:
-    closed = float(mean_prescribed_pulsating(ratio, amplitude, math.radians(lead)))
-
-    assert direction("sine", phase, ratio, "sine", amplitude, lead).mean == pytest.approx(closed, abs=1e-13)
 
 
 @given(slip=forms, load=forms, phase=angles, lead=angles, ratio=st.floats(-1.5, 1.5), share=st.floats(0, 0.9))

@@ -15,7 +15,6 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.orbit.panels import DERIVATIVE, WEIGHTS
 from frictionlab.scene.scene import Scene
-from frictionlab.theory import mean_prescribed_longitudinal
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 LAW = Coulomb(mu=0.4)
@@ -212,16 +211,6 @@ def forces(one, tau):
         for which, (rate, phase, size) in zip(known.which, known.sines, strict=True):
             found[which, panel] += size * np.sin(rate * times + phase)
     return found[LOAD1], found[BELT1], LAW.mu * found[NORMAL] / one.normal_load
-
-
-@pytest.mark.parametrize("waveform", ["square", "triangle"])
-def test_prescribed_slip_of_any_waveform_meets_its_closed_form(waveform):
-    ratios = np.array([-1.5, -0.4, 0.05, 0.9])
-    slip = {"velocity_amplitude": 2.0, "frequency": 3.0, "phase": 50.0, "waveform": waveform}
-    answers = solve([Scene(belt_speed=2.0 * ratio, slip=slip) for ratio in ratios])
-    closed_form = 0.4 * mean_prescribed_longitudinal(ratios, waveform)
-    assert np.all(answers.error <= 1e-13)
-    assert np.all(np.abs(answers.mean.real - closed_form) <= answers.error + 1e-14)
 
 
 def test_what_it_cannot_do_is_refused_with_the_way_out():

@@ -42,9 +42,7 @@ def scene(ratio: float, waveform: Any = "sine", phase: float = 0.0, **keys: Any)
 
 
 def answer(one: Scene, law: Any, method: Any = None, tolerance: float = 1e-9) -> Any:
-    method = method or Shooting()
-    assert method.refusal(one, law) is None
-    return with_columns(method, [one], law, tolerance)
+    return with_columns(method or Shooting(), one, law, tolerance)
 
 
 def mean(one: Scene, law: Any, method: Any = None) -> float:
@@ -57,7 +55,7 @@ def mean(one: Scene, law: Any, method: Any = None) -> float:
 @pytest.mark.parametrize("method", [Exact(), Shooting()], ids=lambda method: method.name)
 @given(
     waveform=st.sampled_from(["sine", "square", "triangle", "sawtooth"]),
-    ratio=st.floats(-0.98, 0.98) | st.sampled_from([1.2, -3.0]),
+    ratio=st.floats(-0.99, 0.99) | st.sampled_from([0.0, 1.2, 1.5, -2.0, -3.0]),
     phase=angles,
 )
 @settings(max_examples=20)
@@ -65,11 +63,13 @@ def test_friction_along_the_belt_has_the_closed_form_of_its_waveform(
     method: Any, waveform: str, ratio: float, phase: float
 ) -> None:
     closed = 0.4 * float(mean_prescribed_longitudinal(ratio, waveform))
+    found = answer(scene(ratio, waveform, phase), LAW, method)
 
-    assert mean(scene(ratio, waveform, phase), LAW, method) == pytest.approx(closed, abs=1e-13)
+    assert found.mean[0].real == pytest.approx(closed, abs=1e-13)
+    assert found.error[0] <= (1e-13 if method.name == "exact" else 1e-9)
 
 
-@given(ratio=st.floats(-0.98, 0.98), amplitude=st.floats(0.05, 0.95), lead=angles, phase=angles)
+@given(ratio=st.floats(-0.99, 0.99), amplitude=st.floats(0.0, 0.99), lead=angles, phase=angles)
 @settings(max_examples=20)
 def test_a_normal_load_that_pulsates_with_slip_moves_the_mean(
     ratio: float, amplitude: float, lead: float, phase: float

@@ -37,10 +37,7 @@ def shaped(belt_speed, waveform, amplitude=8.0, **changes):
 
 
 def solve(scenes, law=LAW, method=None):
-    """Answers, each scene accepted."""
-    scenes, method = [scenes] if isinstance(scenes, Scene) else scenes, method or MDSM
-    assert [method.refusal(one, law) for one in scenes] == [None] * len(scenes)
-    return with_columns(method, scenes, law, 1e-8)
+    return with_columns(method or MDSM, scenes, law, 1e-8)
 
 
 @pytest.mark.parametrize(

@@ -41,8 +41,7 @@ def chaotic(belt_speed=0.3):
 
 def solve(one, law, tolerance=1e-8):
     """The answers of one scene."""
-    assert Shooting().refusal(one, law) is None
-    answers = with_columns(Shooting(), [one], law, tolerance)
+    answers = with_columns(Shooting(), one, law, tolerance)
     return answers, {name: float(column[0]) for name, column in answers.columns.items()}
 
 

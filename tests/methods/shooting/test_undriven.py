@@ -32,9 +32,7 @@ CUBIC = Stribeck(mu_static=0.4, mu_kinetic=0.25, stribeck_speed=0.5, curve="cubi
 def solve(law, belt_speed, tolerance=1e-8, **scene):
     """Answers of one undriven scene: its row, its largest deflection, its status."""
     values = {"damping_ratio": 0.0, "normal_load": 1.0, **scene}
-    one = Scene(belt_speed=belt_speed, **values)
-    assert Shooting().refusal(one, law) is None
-    answers = with_columns(Shooting(), [one], law, tolerance)
+    answers = with_columns(Shooting(), Scene(belt_speed=belt_speed, **values), law, tolerance)
     row = {name: float(column[0]) for name, column in answers.columns.items()}
     orbit = answers.orbit(0)
     deflection = float(orbit.x.real.max()) if orbit is not None else math.nan

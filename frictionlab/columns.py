@@ -336,6 +336,14 @@ ONSETS: dict[str, str] = {
 }
 """The columns of the table of onsets after the inputs."""
 
+BOUNDARIES: dict[str, str] = {
+    "measure": "of a curve, a column of curves.csv",
+    "level": "its value on the line",
+    "piece": "number of the line, where a level has several",
+    "closed": "whether the line ends where it begins",
+}
+"""The columns of the table of boundaries after the inputs; after them each of the two numbers with its error."""
+
 ATTRACTORS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",
     "state": "its number at this belt speed, from 1",

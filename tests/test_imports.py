@@ -127,7 +127,7 @@ OUTSIDE = {
         "matplotlib": "charts notebook.comparison bench.charts bench.pictures",  # of comparison the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",
-        "scipy": "theory numerics methods.reduced fitting bench.peers",
+        "scipy": "theory numerics methods.reduced onsets fitting bench.peers",
         "heyoka": "bench.peers",
         "numbalsoda": "bench.peers",
         "jinja2": "report",

@@ -81,7 +81,8 @@ class Kept(NamedTuple):
 class FigureData:
     """What figures are drawn of: a result table, and of the same run what there is of the rest.
 
-    curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``. units: in which the numbers of a
+    curves: of ``curves.csv``, with the shapes; attractors, boundaries: of
+    ``attractors.csv`` and ``boundaries.csv``. units: in which the numbers of a
     scene in SI units were written; tables given are then in these. words: for labels of laws and methods.
     v_lin: of inputs by their columns.
     """
@@ -91,6 +92,7 @@ class FigureData:
     onsets: pd.DataFrame | None = None
     curves: pd.DataFrame | None = None
     attractors: pd.DataFrame | None = None
+    boundaries: pd.DataFrame | None = None
     kept: Kept | None = None
     options: FigureOptions = USUAL_FIGURES
     units: Mapping[str, ShownUnit] = field(default_factory=dict)
@@ -99,7 +101,7 @@ class FigureData:
 
     def __post_init__(self) -> None:
         """Tables into the units in which they are shown, and the words for laws and methods."""
-        for name in ("table", "onsets", "curves", "attractors"):
+        for name in ("table", "onsets", "curves", "attractors", "boundaries"):
             if (table := getattr(self, name)) is not None:
                 object.__setattr__(self, name, self.shown(table))
 
@@ -276,7 +278,7 @@ def _of_table(data: FigureData, family: Family) -> dict[str, Drawer]:
     if (data.options.shape or data.options.all) and (shapes := ShapeFigure.of(family, curves)):
         found["shape"] = shapes.draw
     if (measures := map_of_curves(curves)) is not None:
-        found["map"] = measures.draw
+        found["map"] = replace(measures, boundaries=data.boundaries).draw
     return found
 
 

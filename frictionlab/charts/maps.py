@@ -7,7 +7,7 @@ curves: how far friction falls, and the area that decides on their shape.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -42,7 +42,7 @@ from frictionlab.charts.sweeps import (
     some_of,
     sweep_of,
 )
-from frictionlab.columns import is_belt_speed, word
+from frictionlab.columns import BOUNDARIES, is_belt_speed, word
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
 MOST_SEPARATE = 12  # values of a number beside belt speed that are lines; more are a map
@@ -51,6 +51,7 @@ LINE_PLACES = 400  # places along a line from a formula
 RASTERIZED = 100  # cells: more are pixels in a drawing
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
+BOUNDARY_LINE: Any = {"color": "#b3123c", "linewidth": 1.8, "zorder": 4}
 OUTLINE = withStroke(linewidth=2.8, foreground="white")
 DARK_EDGE = withStroke(linewidth=2.2, foreground="0.2")
 MEASURE_NAMES = {
@@ -58,6 +59,9 @@ MEASURE_NAMES = {
     "reduction": "largest fall of mean friction\nbelow steady sliding",
     "shape_area": "area over the chord\n(> 0 concave, < 0 convex)",
 }
+
+
+BOUNDARY_WORDS = {"reduction": "fall of mean friction", "shape_area": "area over the chord"}
 
 
 class MapValues(NamedTuple):
@@ -73,6 +77,7 @@ class MapFigure:
     """Maps of some columns over the same two numbers, whose names in words may be longer than their own.
 
     left_out: pictures that are not drawn. v_lin: of inputs by their columns, None where they are not all there is.
+    boundaries: lines of levels of the measures that the pictures show.
     """
 
     over: tuple[str, str]
@@ -82,6 +87,7 @@ class MapFigure:
     columns: Sequence[str] = ()
     left_out: int = 0
     v_lin: Callable[[Mapping[str, float | str]], float] | None = None
+    boundaries: pd.DataFrame | None = None
 
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """The figure, with matplotlib's settings as they are."""
@@ -102,9 +108,10 @@ class MapFigure:
         for axes, picture, grid, told in zip(places, self.pictures, grids, titles, strict=True):
             mesh = _draw_shades(axes, grid, norm)
             if column != "error":  # which jumps from point to point
-                _draw_contours(axes, grid, norm)
+                _draw_contours(axes, grid, norm, self._levels_solved(column))
             if self._along_speed:
                 self._draw_v_lin(axes, picture)
+            self._draw_boundaries(axes, picture, column)
             self._mark_missing(axes, picture)
             axes.set(xlabel=self.words[0], ylabel=self.words[1])
             axes.spines[["top", "right"]].set_visible(True)
@@ -132,6 +139,20 @@ class MapFigure:
         axes.autoscale(False)
         axes.plot(x, y, color="white", linestyle="dashed", linewidth=1.1, path_effects=[DARK_EDGE])
 
+    def _levels_solved(self, column: str) -> set[float]:
+        """The levels of a measure whose lines were solved for."""
+        if self.boundaries is None:
+            return set()
+        return set(self.boundaries["level"][self.boundaries["measure"] == column].tolist())
+
+    def _draw_boundaries(self, axes: Axes, picture: CurveData, column: str) -> None:
+        """The lines that were solved for, of the law and the method of a picture."""
+        if self.boundaries is None:
+            return
+        own = picture.rows_in(self.boundaries, (*BOUNDARIES, *self.over))
+        for _, line in own[own["measure"] == column].groupby(["level", "piece"]):
+            axes.plot(*(line[name] for name in self.over), **BOUNDARY_LINE)
+
     def _mark_missing(self, axes: Axes, picture: CurveData) -> None:
         look: Any = {"linestyle": "none", "color": "0.3", "markersize": 3}
         for status, mark in LEGEND_MARKS.items() if "status" in picture.rows else ():
@@ -154,6 +175,12 @@ class MapFigure:
         entries += part_told(len(self.pictures), len(self.pictures) + self.left_out, "maps")
         if any(picture.rows[column].isna().any() for picture in self.pictures for column in self.columns):
             entries.append(Patch(facecolor="white", edgecolor="0.3", linewidth=0.5, label="no number"))
+        if self.boundaries is not None:
+            of_shown = self.boundaries[self.boundaries["measure"].isin(self.columns)]
+            for measure, level in of_shown[["measure", "level"]].drop_duplicates().itertuples(index=False):
+                entries.append(
+                    Line2D([], [], label=f"{BOUNDARY_WORDS[measure]} {level:g}, solved for", **BOUNDARY_LINE)
+                )
         if self._along_speed:
             look: Any = {"color": "white", "linestyle": "dashed", "path_effects": [DARK_EDGE]}
             entries.append(Line2D([], [], label=r"belt speed $V_\mathrm{lin}$", **look))
@@ -216,14 +243,15 @@ def _draw_shades(axes: Axes, grid: MapValues, norm: Normalize) -> QuadMesh:
     return mesh
 
 
-def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize) -> None:
-    """Labelled lines of equal value, zero a broad one."""
+def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize, without: Container[float]) -> None:
+    """Labelled lines of equal value but for some, zero a broad one."""
     low, high = float(norm.vmin or 0.0), float(norm.vmax or 0.0)
     few = min(grid.known.shape) < 2 or np.isfinite(grid.known).sum() < 4
     if few or not low < high:
         return
     edge = LEVEL_EDGE * (high - low)  # a plateau at an end differs from it by rounding
     levels = [at for at in MaxNLocator(MOST_LEVELS).tick_values(low, high) if low + edge < at < high - edge]
+    levels = [at for at in levels if at not in without]
     if not levels:
         return
     broad = [1.8 if at == 0.0 else 0.7 for at in levels]

@@ -27,5 +27,5 @@ def figure_data(saved: Saved) -> FigureData:
     from frictionlab.charts.figures import FigureData, Kept
 
     kept = Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)
-    more = {"onsets": saved.onsets, "curves": saved.curves, "attractors": saved.attractors, "kept": kept}
-    return FigureData.of(saved.study, saved.table, saved.title, **more)
+    tables = {name: getattr(saved, name) for name in ("onsets", "curves", "attractors", "boundaries")}
+    return FigureData.of(saved.study, saved.table, saved.title, kept=kept, **tables)

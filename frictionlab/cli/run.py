@@ -223,6 +223,9 @@ def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
     if job.study.asks_for(ONSETS_GROUP):
         meter.begins("finding onsets")
         result = api.with_onsets(result)
+    if job.study.boundaries:
+        meter.begins("finding boundaries")
+        result = api.with_boundaries(result)
     if pages.pages_are_there(result, asked.figures):
         for what, there in {"figures": job.out / "figures", "report": job.out / "report.html"}.items():
             if there.exists():

@@ -20,7 +20,8 @@ class Run:
     """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
 
     made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
-    its shape; none where belt speed is not swept or the run was stopped. onsets_made: finds the onsets of its curves.
+    its shape; none where belt speed is not swept or the run was stopped. onsets_made, boundaries_made: find the
+    onsets of its curves, and the lines on which their measures have given levels.
     attractors: a row per Poincare point of every state that motions end in, where the study keeps them; else a row
     per state of the points that have several, None where no point has.
     harmonics: a row per harmonic of every orbit, None where the study does not keep them.
@@ -42,6 +43,7 @@ class Run:
     computed: int
     curves: pd.DataFrame = field(default_factory=pd.DataFrame)
     onsets_made: Callable[[], pd.DataFrame] = pd.DataFrame
+    boundaries_made: Callable[[], pd.DataFrame] = pd.DataFrame
     shown: pd.DataFrame | None = None
     found: Mapping[str, int] | None = None
     attractors: pd.DataFrame | None = None
@@ -89,6 +91,25 @@ class Run:
         [['stick_begins', 43.9], ['reversal_ends', 50.0], ['stick_ends', 50.0]]
         """
         return self.onsets_made()
+
+    @cached_property
+    def boundaries(self) -> pd.DataFrame:
+        """The lines that the study's ``boundaries`` ask for, a row per place of each, found when first asked for.
+
+        Each of the two swept numbers has an error: how far the line may be from the place. Curves are solved between
+        those of the grid.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(amplitude=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> loads, speeds = {"start": 5, "stop": 15, "num": 2}, {"start": 1, "stop": 60, "num": 60}
+        >>> frequencies = {"start": 0.99, "stop": 1, "num": 2}
+        >>> sweep = {"scene.normal_load": loads, "scene.drive.frequency": frequencies, "scene.belt_speed": speeds}
+        >>> done = fl.run(fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep=sweep, boundaries={"shape_area": 0}))
+        >>> done.boundaries["scene.normal_load"].iloc[[0, -1]].round(2).tolist()
+        [8.36, 8.28]
+        """
+        return self.boundaries_made()
 
     @property
     def to_show(self) -> pd.DataFrame:

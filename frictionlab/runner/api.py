@@ -57,6 +57,7 @@ __all__ = [
     "run",
     "run_folder",
     "table_of",
+    "with_boundaries",
     "with_onsets",
 ]
 
@@ -114,7 +115,7 @@ def run_folder(study: Study, out: Path) -> RunFolder:
     file = study.path.name if study.path is not None else None
     told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
     kept = study.keep_orbit, study.keep_harmonics, study.keep_attractors
-    asked = repr((list(study.sweep), kept, sorted(study.selected())))
+    asked = repr((list(study.sweep), kept, sorted(study.selected()), *sorted(study.boundaries.items())))
     marks = {SOLVER: code_digest(study), ASKED: hashlib.sha256(asked.encode()).hexdigest()}
     return RunFolder(out, Identity(*told, marks=marks))
 
@@ -131,6 +132,20 @@ def with_onsets(done: Run) -> Run:
         return replace(done, onsets_made=lambda: earlier)
     if not done.curves.empty:
         folder.save_text(folder.onsets_file, done.onsets)
+    return done
+
+
+def with_boundaries(done: Run) -> Run:
+    """The run, its boundaries in boundaries.csv beside its table: found now, or read where an earlier run wrote them.
+
+    Raises SaveError.
+    """
+    assert done.folder is not None
+    folder = run_folder(done.study, done.folder)
+    earlier = folder.intact_text(folder.boundaries_file) if done.computed == 0 else None
+    if earlier is not None:
+        return replace(done, boundaries_made=lambda: earlier)
+    folder.save_text(folder.boundaries_file, done.boundaries)
     return done
 
 

@@ -27,11 +27,10 @@ class FolderFiles:
         self.path = path
         self.study_file, self.account_file = path / "study.yaml", path / "provenance.json"
         self.table, self.orbits_file = path / "results.parquet", path / "orbits.parquet"
-        names = "results", "curves", "onsets", "attractors", "harmonics"
+        names = "results", "curves", "onsets", "attractors", "harmonics", "boundaries"
         self.texts = [path / f"{name}.csv" for name in names]
-        self.csv_file, self.curves_file, self.onsets_file, self.attractors_file, self.harmonics_file = (
-            self.texts
-        )
+        self.csv_file, self.curves_file, self.onsets_file, *more = self.texts
+        self.attractors_file, self.harmonics_file, self.boundaries_file = more
         self.tables = [self.table, self.orbits_file, *self.texts]
 
     def account(self) -> dict[str, Any]:

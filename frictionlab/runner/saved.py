@@ -26,7 +26,7 @@ from frictionlab.study import Study, StudyError, read_back
 from frictionlab.study.grid import grid_size
 
 WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
-REPORT_FILES = frozenset({"results.parquet", "curves.csv", "onsets.csv"})
+REPORT_FILES = frozenset({"results.parquet", "curves.csv", "onsets.csv", "boundaries.csv"})
 """Files that a report is made from, beside the study and its account."""
 MOST_NAMED = 3
 """Runs named to somebody who gave the folder around them."""
@@ -52,6 +52,11 @@ class Saved:
     def onsets(self) -> pd.DataFrame | None:
         """onsets.csv; None where there is none. Raises FolderError."""
         return self._read("onsets.csv")
+
+    @cached_property
+    def boundaries(self) -> pd.DataFrame | None:
+        """boundaries.csv; None where there is none. Raises FolderError."""
+        return self._read("boundaries.csv")
 
     @cached_property
     def attractors(self) -> pd.DataFrame | None:

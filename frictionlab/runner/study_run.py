@@ -20,6 +20,7 @@ from frictionlab.results.run import Run
 from frictionlab.results.table import finished_part, inputs, kept_rows, whole
 from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
 from frictionlab.runner.arguments import Existing
+from frictionlab.runner.boundaries import boundary_table
 from frictionlab.runner.chosen_speeds import choose_speeds
 from frictionlab.runner.chunks import task_of
 from frictionlab.runner.errors import SaveError
@@ -227,6 +228,9 @@ class StudyRun:
             self._computed,
             gathered.curves,
             lambda: self._onsets(read),
+            lambda: boundary_table(
+                study, gathered.curves.iloc[:0] if stopped else gathered.curves, self._solved_apart
+            ),
             harmonics=None if study.keep_harmonics is None else gathered.harmonics,
         )
 
@@ -243,16 +247,21 @@ class StudyRun:
             self._computed,
             curves,
             lambda: self._onsets(read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
+            lambda: boundary_table(study, curves, self._solved_apart),
             shown,
             counts,
         )
+
+    def _solved_apart(self, study: Study) -> Run:
+        """The run of another study, whose chunks are kept with those of this one."""
+        return StudyRun(study, None, self.kept, RunWays()).run()
 
     def _onsets(self, table: pd.DataFrame) -> pd.DataFrame:
         """The onsets of the curves; where the table lacks what they are found from, the points are solved again."""
         study = self.study
         if len(table) and lacks_multipliers(study, table):
             asked = replace(study, columns=(ONSETS_GROUP,), expect=())
-            table = StudyRun(asked, None, self.kept, RunWays()).run().table
+            table = self._solved_apart(asked).table
         return onset_table(study, table)
 
     def _judged(self, done: Run, stopped: bool = False) -> Run:

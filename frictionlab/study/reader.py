@@ -18,6 +18,7 @@ from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.figure_options import read_figure_options
 from frictionlab.study.grid import StudyGrid
 from frictionlab.study.law_files import LawReader, StudyLaws, read_laws
+from frictionlab.study.level_lines import BOUNDARIES_KEY, read_boundaries
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, coefficient_of
 from frictionlab.study.possible import note_impossible_points
@@ -28,7 +29,7 @@ from frictionlab.study.yaml_source import Source
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
-    *("sweep", "expect", "keep", "columns", "limit", "figures", "data", "free"),
+    *("sweep", "expect", "keep", "columns", "limit", "figures", "boundaries", "data", "free"),
 )
 KEPT = {"orbit": 2, "attractors": 1, "harmonics": 1}
 """What ``keep`` may ask for, and the least count of each."""
@@ -99,6 +100,8 @@ class _StudyReader:
         told = self._plain_values()
         told["expect"] = expectations(self._tree.get("expect", []), self._table(scene, sweep), self._notes)
         told["columns"] = self._columns(scene)
+        if BOUNDARIES_KEY in self._tree:
+            told[BOUNDARIES_KEY] = read_boundaries(self._tree[BOUNDARIES_KEY], sweep, len(laws), self._notes)
         if self._notes.all or scene is None:
             return None
         told["code"] = brought.code(choice.kind for choice in laws)

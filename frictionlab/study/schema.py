@@ -37,6 +37,7 @@ _KEYS = {
     "columns": "result columns and groups of them to find, told by `frictionlab columns`; all for every one",
     "limit": "what a point may cost",
     "figures": "how figures are drawn",
+    "boundaries": "measures of curves and levels: their lines over the two swept numbers, in boundaries.csv",
     "keep": "what to write beside the table",
     "data": "measurements: `frictionlab fit` fits to them, run and check solve at their belt speeds",
     "file": "a file, or a list of files, .csv, .tsv or .parquet, from the study's folder; text may be .gz",
@@ -68,6 +69,7 @@ _KEYS = {
 """What the keys of a study mean, apart from those of scenes, laws and methods, whose docstrings tell them."""
 OURS_AND_THEIRS = "how the files call our columns, such as {belt_speed: v, mean_friction: mu_bar}"
 _NUMBER = {"type": "number"}
+_LEVELS: dict[str, Any] = {"anyOf": [_NUMBER, {"type": "array", "items": _NUMBER, "minItems": 1}]}
 _WORD_OR_NUMBER: dict[str, Any] = {
     "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
 }
@@ -117,6 +119,9 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
             "oneOf": [{"const": EVERY}, _record(FigureOptions, definitions)],
             "description": _KEYS["figures"],
         },
+        "boundaries": _closed_object(
+            {name: _LEVELS | {"description": columns.CURVES[name]} for name in columns.CURVE_MEASURES}, []
+        ),
         "data": _closed_object(
             {
                 "file": {"oneOf": [_TEXT, {"type": "array", "items": _TEXT, "minItems": 1}]},

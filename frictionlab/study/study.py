@@ -17,6 +17,7 @@ from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.data import DataFiles
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 from frictionlab.study.grid import StudyGrid
+from frictionlab.study.level_lines import levels_told
 from frictionlab.study.objects import values_of_objects
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA, Expectation, LawChoice, natural
 from frictionlab.study.ranges import SpeedRange
@@ -38,7 +39,8 @@ class Study(StudyGrid):
     harmonic of velocity and friction to keep, None for none.
     data: measured files, and free: ranges by name of what ``frictionlab fit`` may change.
     columns: result columns and groups asked for, None for the default ones. seconds_per_point: the time a point may
-    take [s]. figures: how they are drawn. plugins: its law files. code: SHA-256 of every law that is not
+    take [s]. figures: how they are drawn. boundaries: measures of curves and the levels
+    whose lines over the two swept numbers are found. plugins: its law files. code: SHA-256 of every law that is not
     frictionlab's own.
     ``Study.of`` makes one of Python objects, ``fl.run`` solves it.
 
@@ -61,6 +63,7 @@ class Study(StudyGrid):
     columns: tuple[str, ...] | None = None
     seconds_per_point: float = SECONDS_PER_POINT
     figures: FigureOptions = USUAL_FIGURES
+    boundaries: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     title: str = ""
     source: str = ""
     plugins: tuple[LawFile, ...] = ()
@@ -143,6 +146,8 @@ class Study(StudyGrid):
             told["limit"] = {LIMIT_KEY: self.seconds_per_point}
         if figures := self.figures.resolved():
             told["figures"] = figures
+        if self.boundaries:
+            told["boundaries"] = natural(levels_told(self.boundaries))
         if self.data is not None:
             told["data"] = self.data.resolved()
         if self.free:
@@ -169,7 +174,9 @@ class Study(StudyGrid):
         judged = [
             each.column for each in self.expect if each.column and each.column not in columns.CURVE_MEASURES
         ]
-        of_curves = any(each.shape or each.column in columns.CURVE_MEASURES for each in self.expect)
+        of_curves = bool(self.boundaries) or any(
+            each.shape or each.column in columns.CURVE_MEASURES for each in self.expect
+        )
         of_shape = columns.OF_SHAPE if of_curves else ()
         return columns.selected(self.columns, [*judged, *of_shape])
 

@@ -1,0 +1,61 @@
+"""What a study wants level lines of: the key ``boundaries``, and the two swept numbers they are over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from frictionlab.columns import BELT_SPEEDS, CURVE_MEASURES
+from frictionlab.mistakes.notes import Notes
+from frictionlab.study.axes import FRICTION, SCENE, Axis, axes_of
+from frictionlab.study.grid import StudyGrid
+from frictionlab.study.sweeps import Sweeps
+
+BOUNDARIES_KEY = "boundaries"
+_NEEDED = (
+    "needs the belt speed and two numbers swept, each on its own, the numbers of a scene or of the only law"
+)
+
+
+def read_boundaries(given: Any, sweeps: Sweeps, laws: int, notes: Notes) -> dict[str, tuple[float, ...]]:
+    """Levels by measure of a curve; mistakes are noted. laws: how many the study has."""
+    read = notes.mapping(given, (BOUNDARIES_KEY,), CURVE_MEASURES) or {}
+    found = {}
+    for measure in (name for name in read if name in CURVE_MEASURES):
+        levels = read[measure] if isinstance(read[measure], list) else [read[measure]]
+        numbers = [notes.number(level, (BOUNDARIES_KEY, measure)) for level in levels]
+        found[measure] = tuple(level for level in numbers if level is not None)
+    axes = axes_of(sweeps.sweep, sweeps.links)
+    speeds = [axis for axis in axes if _is_of_speed(axis)]
+    if read and (len(speeds) != 1 or len(axes) != 3 or not all(map(_is_number, axes))):
+        notes.add((BOUNDARIES_KEY,), f"{_NEEDED}; swept here: {', '.join(sweeps.sweep) or 'nothing'}")
+    elif read and laws > 1 and any(not axis.is_of_scene for axis in axes):
+        notes.add((BOUNDARIES_KEY,), f"{_NEEDED}; the study has {laws} laws and sweeps a number of one")
+    return found
+
+
+def swept_numbers(study: StudyGrid) -> tuple[Axis, Axis]:
+    """The two axes of a study that has boundaries beside that of belt speed."""
+    one, other = (axis for axis in study.axes if not _is_of_speed(axis))
+    return one, other
+
+
+def column_swept(axis: Axis) -> str:
+    """The column of the table that has the number of an axis."""
+    (path,) = axis.values
+    return path if path.startswith(SCENE) else f"law.{path.rpartition('.')[2]}"
+
+
+def levels_told(boundaries: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
+    """The entry of a study file."""
+    return {name: levels[0] if len(levels) == 1 else list(levels) for name, levels in boundaries.items()}
+
+
+def _is_of_speed(axis: Axis) -> bool:
+    return len(axis.values) == 1 and not axis.values.keys().isdisjoint(BELT_SPEEDS)
+
+
+def _is_number(axis: Axis) -> bool:
+    numbers = all(isinstance(value, float | int) for values in axis.values.values() for value in values)
+    alone = len(axis.values) == 1 and next(iter(axis.values)) != FRICTION
+    return _is_of_speed(axis) or (numbers and alone and len(axis) > 1)

@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
@@ -27,6 +29,7 @@ from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudi
 
 FIGURES = Path(__file__).parents[1] / "docs" / "figures"
 MU, LOAD = 0.4, 10.0
+COULOMB = fl.Coulomb(mu=MU)
 SHARES = np.arange(1, 51) / 50
 """Belt speeds over V_lin."""
 
@@ -99,7 +102,7 @@ def other_body(frequency: float, ratio: float, softness: float, norm: str) -> fl
     law = fl.Dahl(mu=MU, presliding_length=softness * slip_of(scene)[1])
     free = {"scene.drive.frequency": (0.5 * frequency, 2 * frequency), "scene.damping_ratio": (0.001, 1.0)}
     speeds = SHARES[4::5] * v_lin(scene)
-    return fl.equivalent((scene, law), (scene, fl.Coulomb(mu=MU), free), speeds, norm=norm, starts=4)  # type: ignore[arg-type]
+    return fl.equivalent((scene, law), (scene, COULOMB, free), speeds, norm=norm, starts=4)  # type: ignore[arg-type]
 
 
 FREQUENCIES, RATIOS = np.geomspace(0.25, 4, 41), np.linspace(0.05, 1.2, 24)
@@ -113,7 +116,7 @@ def draw_maps() -> None:
     }
     for at in np.ndindex(found["rms"].shape):
         scene = body(FREQUENCIES[at[1]], RATIOS[at[0]])
-        curve = means(scene, fl.Coulomb(mu=MU), SHARES * v_lin(scene))
+        curve = means(scene, COULOMB, SHARES * v_lin(scene))
         for norm in ("largest", "rms"):
             close = nearest(curve, norm)
             found[norm][at] = close.distance
@@ -126,38 +129,36 @@ def draw_maps() -> None:
         except ValueError as why:  # a Dahl body may have two motions
             if "not_unique" not in str(why):
                 raise
+    apart, few = [0.02, 0.05, 0.1, 0.2, 0.3], (FEW_FREQUENCIES, FEW_RATIOS)
+    several = FREQUENCIES, RATIOS
+    maps = {
+        "Dahl, prescribed slip, for a Coulomb body:\nlargest distance over μ": (
+            *several,
+            found["largest"],
+            apart,
+        ),
+        "the same:\nroot mean square over μ": (*several, found["rms"], apart),
+        "its presliding length over X, by root mean\nsquare (lightest: 10 or any longer)": (
+            *several,
+            found["soft"],
+            [0.01, 0.1, 1],
+        ),
+        "another Coulomb body for a Dahl body:\nlargest distance over μ (white: two motions)": (
+            *few,
+            reverse,
+            apart,
+        ),
+    }
     with mpl.rc_context(STYLE):
         sheet = Sheet.blank(4, NO_HEADING, height=2.5)
-        apart = [0.02, 0.05, 0.1, 0.2, 0.3]
-        several = FREQUENCIES, RATIOS
-        _draw_map(
-            sheet,
-            0,
-            (*several, found["largest"]),
-            apart,
-            "Dahl, prescribed slip, for a Coulomb body:\nlargest distance over μ",
-        )
-        _draw_map(sheet, 1, (*several, found["rms"]), apart, "the same:\nroot mean square over μ")
-        _draw_map(
-            sheet,
-            2,
-            (*several, found["soft"]),
-            [0.01, 0.1, 1],
-            "its presliding length over X, by root mean\nsquare (yellow: 10 or any longer)",
-        )
-        fewer = FEW_FREQUENCIES, FEW_RATIOS
-        _draw_map(
-            sheet,
-            3,
-            (*fewer, reverse),
-            apart,
-            "another Coulomb body for a Dahl body:\nlargest distance over μ (white: two motions)",
-        )
+        for place, (title, shown) in enumerate(maps.items()):
+            axes = sheet.axes(place)
+            axes.set_title(title, loc="left")
+            sheet.figure.colorbar(_draw_map(axes, *shown), ax=axes, pad=0.02)
     write_figure(sheet.figure, FIGURES / "equivalence_maps", ("svg",))
 
 
-def _draw_map(sheet: Sheet, place: int, grid: Any, levels: list[float], title: str) -> None:
-    axes, (frequencies, ratios, values) = sheet.axes(place), grid
+def _draw_map(axes: Axes, frequencies: Any, ratios: Any, values: Any, levels: list[float]) -> QuadMesh:
     white = [withStroke(linewidth=2.4, foreground="white")]
     norm = LogNorm(1e-3, 10) if max(levels) >= 1 else Normalize(0, 0.45)
     mesh = axes.pcolormesh(*map(cell_edges, (frequencies, ratios)), values, norm=norm, rasterized=True)
@@ -166,63 +167,56 @@ def _draw_map(sheet: Sheet, place: int, grid: Any, levels: list[float], title: s
     for label in axes.clabel(lines, fontsize=7, fmt="%g", inline=False):
         label.set(path_effects=white)
     axes.set(xscale="log", xlabel="circular frequency Ω", ylabel="friction over load")
-    axes.set_title(title, loc="left")
-    axes.set_xticks([0.25, 0.5, 1, 2, 4], ["0.25", "0.5", "1", "2", "4"], minor=False)
+    axes.set_xticks([0.25, 0.5, 1, 2, 4], ["0.25", "0.5", "1", "2", "4"])
     axes.minorticks_off()
     axes.set_xlim(frequencies[0], frequencies[-1])
-    sheet.figure.colorbar(mesh, ax=axes, pad=0.02)
+    return mesh
 
 
 def draw_curves() -> None:
     """Curves that are nearly the same, and three pairs that are not."""
-    coulomb, speeds = fl.Coulomb(mu=MU), np.arange(1, 141) / 100
+    speeds = np.arange(1, 141) / 100
+    curves = {
+        "Coulomb body, Ω 2, friction 0.4 of the load,\nand Dahl under a prescribed slip": beside_slip(
+            body(2, 0.4)
+        ),
+        "the same at Ω 0.5": beside_slip(body(0.5, 0.4)),
+        "Coulomb body, loads along and across, Ω 4,\nand Dahl under a prescribed slip": beside_slip(
+            planar_body()
+        ),
+        "Dahl body, Ω 2, friction 0.4 of the load,\nand another Coulomb body": beside_another_body(),
+    }
     words = "the curve of the body", "Coulomb, prescribed slip", "the nearest curve"
-    cases = [
-        (body(2, 0.4), "Coulomb body, Ω 2, friction 0.4 of the load,\nand Dahl under a prescribed slip"),
-        (body(0.5, 0.4), "the same at Ω 0.5"),
-        (planar_body(), "Coulomb body, loads along and across, Ω 4,\nand Dahl under a prescribed slip"),
-    ]
     with mpl.rc_context(STYLE):
         entries = [Line2D([], [], label=label, **look) for label, look in zip(words, CYCLE, strict=False)]
         sheet = Sheet.blank(4, NO_HEADING, entries)
-        for place, (scene, title) in enumerate(cases):
-            end = v_lin(scene)
-            length = nearest(means(scene, coulomb, SHARES * end), "largest").softness
-            slip, stroke = slip_of(scene)
-            law = fl.Dahl(mu=MU, presliding_length=max(length, 1e-4) * stroke)
-            drawn = [
-                means(one, law, speeds * end) for one, law in ((scene, coulomb), (slip, coulomb), (slip, law))
-            ]
-            _draw_curves(sheet, place, speeds, drawn, title)
-        scene = body(2, 0.4)
-        found = other_body(2, 0.4, 0.1, "largest").values
-        other = scene.with_(**{name.removeprefix("scene."): value for name, value in found.items()})
-        law = fl.Dahl(mu=MU, presliding_length=0.1 * slip_of(scene)[1])
-        drawn = [
-            means(one, law, speeds * v_lin(scene))
-            for one, law in ((scene, law), (slip_of(scene)[0], coulomb), (other, coulomb))
-        ]
-        _draw_curves(
-            sheet,
-            3,
-            speeds,
-            drawn,
-            "Dahl body, Ω 2, friction 0.4 of the load,\nand another Coulomb body",
-        )
+        for place, (title, models) in enumerate(curves.items()):
+            axes, end = sheet.axes(place), v_lin(models[0][0])
+            for (scene, law), look in zip(models, CYCLE, strict=False):
+                axes.plot(speeds, means(scene, law, speeds * end), **look)
+            axes.set(xlabel=r"belt speed over $V_\mathrm{lin}$", ylabel="mean friction over μ")
+            axes.set(xlim=(0, 1.4), ylim=(0, 1.05))
+            axes.set_title(title, loc="left")
     write_figure(sheet.figure, FIGURES / "equivalence_curves", ("svg",))
 
 
-def _draw_curves(sheet: Sheet, place: int, speeds: Any, curves: Any, title: str) -> None:
-    axes = sheet.axes(place)
-    for curve, look in zip(curves, CYCLE, strict=False):
-        axes.plot(speeds, curve, **look)
-    axes.set(
-        xlabel="belt speed over $V_\\mathrm{lin}$",
-        ylabel="mean friction over μ",
-        ylim=(0, 1.05),
-        xlim=(0, 1.4),
-    )
-    axes.set_title(title, loc="left")
+def beside_slip(scene: fl.Scene) -> list[tuple[fl.Scene, fl.FrictionLaw]]:
+    """A Coulomb body, a prescribed slip, and this with the Dahl friction that is nearest to the first."""
+    length = nearest(means(scene, COULOMB, SHARES * v_lin(scene)), "largest").softness
+    slip, stroke = slip_of(scene)
+    return [
+        (scene, COULOMB),
+        (slip, COULOMB),
+        (slip, fl.Dahl(mu=MU, presliding_length=max(length, 1e-4) * stroke)),
+    ]
+
+
+def beside_another_body() -> list[tuple[fl.Scene, fl.FrictionLaw]]:
+    """A Dahl body, a prescribed slip, and the Coulomb body that is nearest to the first."""
+    scene, found = body(2, 0.4), other_body(2, 0.4, 0.1, "largest").values
+    slip, stroke = slip_of(scene)
+    other = scene.with_(**{name.removeprefix("scene."): value for name, value in found.items()})
+    return [(scene, fl.Dahl(mu=MU, presliding_length=0.1 * stroke)), (slip, COULOMB), (other, COULOMB)]
 
 
 if __name__ == "__main__":

@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from equivalence import LOAD, MU, SHARES, body, means, nearest, other_body, planar_body, slip_of, v_lin
+from equivalence import (
+    COULOMB,
+    LOAD,
+    MU,
+    SHARES,
+    body,
+    means,
+    nearest,
+    other_body,
+    planar_body,
+    slip_of,
+    v_lin,
+)
 
 import frictionlab as fl
 
-COULOMB = fl.Coulomb(mu=MU)
 COUNT = 60
 
 

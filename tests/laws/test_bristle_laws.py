@@ -30,7 +30,6 @@ from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
 from frictionlab.theory import (
-    SteadySliding,
     dahl_describing_function,
     dahl_drift,
     dahl_loop_area,
@@ -326,32 +325,7 @@ def test_bristles_break_away_smoothly(begins, size):
             assert abs(breakaway_share(corner + side * step, begins, ends) - level) <= 1e-11  # slope zero
 
 
-# LuGre about steady sliding, Jenkins in the plane
-
-
-@pytest.mark.parametrize("frequency", [0.2, 2.0, 20.0])
-def test_small_changes_of_slip_meet_the_impedance_of_lugre_friction(frequency):
-    law = LuGre(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.7, stiffness=4.0, damping=0.5, viscosity=0.1)
-    mean, small = 0.6, 1e-5
-    g = [law.sliding_friction(v) - 0.1 * v for v in (mean - 1e-5, mean, mean + 1e-5)]
-    point = SteadySliding(slope=(g[2] - g[0]) / 2e-5, lag=g[1] / (4.0 * mean), lead=0.125, viscosity=0.1)
-    steps = 400
-    h, z, total = 2.0 * math.pi / frequency / steps, g[1] / 4.0, 0.0j
-
-    def slip(t: float) -> float:
-        return mean * (1.0 + small * math.sin(frequency * t))
-
-    periods = 3 + math.ceil(frequency * 5.0 * point.lag)
-    for i in range(periods * steps):
-        t = i * h
-        dz, friction = bristle_on_the_line(law, slip(t), z)
-        if i >= (periods - 1) * steps:
-            total += friction * cmath.exp(-1j * frequency * t) * 2j / (steps * mean * small)
-        b = law.rate(slip(t + 0.5 * h), z + 0.5 * h * dz)
-        c = law.rate(slip(t + 0.5 * h), z + 0.5 * h * b)
-        z = z + h / 6.0 * (dz + 2.0 * b + 2.0 * c + law.rate(slip(t + h), z + h * c))
-
-    assert abs(total - point.impedance(1j * frequency)) <= 1e-3 * abs(point.impedance(1j * frequency))
+# Jenkins in the plane
 
 
 @every_law

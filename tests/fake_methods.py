@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -83,6 +83,14 @@ def register(monkeypatch: pytest.MonkeyPatch, **fakes: type[Method]) -> None:
     known, names = registry.method_class, registry.method_names()
     monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
     monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
+
+
+def faked(belt_speeds: Any, **changes: Any) -> dict[str, Any]:
+    """A study of the body of Fig. 4b by the fake, but for the changes."""
+    drive = {"unbalance": 10, "frequency": 1}
+    scene = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": drive}
+    asked = {"methods": ["fake"], "sweep": {"scene.belt_speed": belt_speeds}}
+    return {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], **asked, **changes}
 
 
 def _orbit(belt_speed: float) -> Orbit | None:

@@ -3,66 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any
 
 from maxwell_slip import MaxwellSlip
+from rate_and_state import RateAndState
 
 from frictionlab.laws.base import Positive
 from frictionlab.laws.memory import MemoryLaw
 
-
-def asinh_of(size: float, logarithm: float) -> float:
-    """asinh(size exp(logarithm)), whatever the exponential."""
-    if size <= 0.0:
-        return 0.0
-    power = logarithm + math.log(size)
-    return power + math.log(2.0) if power > 30.0 else math.asinh(math.exp(power))
-
-
-class Ageing(MemoryLaw):
-    """Rate-and-state friction with the ageing law, regularised at rest; the memory is the contact's age.
-
-    mu0 [-], a [-], b [-], slip_length [scene length], reference_speed [scene velocity]: all > 0.
-    Sources: Dieterich (1979), J. Geophys. Res. 84, 2161; regularised: Rice & Ben-Zion (1996), PNAS 93, 3811.
-    """
-
-    memory_kind: ClassVar[Literal["deflections", "scalars"]] = "scalars"
-
-    mu0: Positive = 0.4
-    a: Positive = 0.01
-    b: Positive = 0.015
-    slip_length: Positive = 0.05
-    reference_speed: Positive = 1.0
-
-    def sliding_friction(self, speed: float) -> float:
-        """Of the age slip_length/speed."""
-        quick = max(speed, 1e-12 * self.reference_speed)
-        state = (self.mu0 - self.b * math.log(quick / self.reference_speed)) / self.a
-        return self.a * asinh_of(speed / (2.0 * self.reference_speed), state)
-
-    def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """One second a second, less what slip renews."""
-        return 1.0 - abs(v) * memory[k] / self.slip_length
-
-    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Along the slip."""
-        speed = abs(v)
-        if speed == 0.0:
-            return 0.0 * v
-        state = (self.mu0 + self.b * math.log(self.reference_speed * memory[0] / self.slip_length)) / self.a
-        return (self.a * asinh_of(speed / (2.0 * self.reference_speed), state) / speed) * v
-
-    def steady(self, v: Any, k: int) -> Any:
-        """The time in which a contact is renewed."""
-        return self.slip_length / abs(v)
-
-    def within(self, memory: Any) -> bool:
-        """Ages are positive."""
-        return memory[0] > 0.0
-
-    def largest_rate(self, speed: float) -> float:
-        """That of renewal."""
-        return speed / self.slip_length
+AGEING = RateAndState(mu=0.4, a=0.01, b=0.015, slip_length=0.05)
 
 
 def elements(stiffness: tuple[float, ...], reach: tuple[float, ...]) -> MaxwellSlip:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Annotated, Any, Self
 
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
-from memory_laws import Ageing, Elements
+from memory_laws import Elements
 from pydantic import Field, model_validator
+from rate_and_state import RateAndState
 
 from broken_laws.case import Case, bug
-from frictionlab.laws.base import Speed
+from frictionlab.laws.base import Positive
 from frictionlab.laws.compliant import Length, Stiffness
 
 
@@ -33,11 +34,11 @@ class Declared(Springs):
         return self.reach[k]
 
 
-class Renewed(Ageing):
-    """Rate-and-state friction that knows its units."""
+class Unscaled(RateAndState):
+    """Rate-and-state friction that does not know its units."""
 
-    slip_length: Length = 0.05
-    reference_speed: Speed = 1.0
+    slip_length: Positive
+    reference_speed: Positive = 1.0
 
 
 class Sticking(GeneralisedMaxwellSlip):
@@ -98,26 +99,31 @@ CASES = (
     bug("YieldsToo", Sticking, "breakaway", yield_deflection=lambda law, k: law.breakaway(0.0, k)),
     Case(BreaksAwayUnasked, Sticking, "breakaway"),
     bug("StoresTwice", Springs, "passivity", stored=lambda law, memory: 0.5 * Springs.stored(law, memory)),
-    Case(Ageing, Renewed, "unit_scaling"),
-    bug("SteadyTwice", Ageing, "steady_sliding", steady=lambda law, v, k: 2.0 * Ageing.steady(law, v, k)),
+    Case(Unscaled, RateAndState, "unit_scaling"),
+    bug(
+        "SteadyTwice",
+        RateAndState,
+        "steady_sliding",
+        steady=lambda law, v, k: 2.0 * RateAndState.steady(law, v, k),
+    ),
     bug(  # slip takes a constant from ages, below zero
         "GrowsYounger",
-        Ageing,
+        RateAndState,
         "invariant_set",
         rate=lambda law, v, memory, k: 1.0 - 50.0 * abs(v) / law.slip_length,
     ),
     bug(
         "RenewsQuicker",
-        Ageing,
+        RateAndState,
         "largest_rate",
-        largest_rate=lambda law, speed: 0.5 * Ageing.largest_rate(law, speed),
+        largest_rate=lambda law, speed: 0.5 * RateAndState.largest_rate(law, speed),
     ),
     bug(  # friction that does not turn round
         "Backwards",
-        Ageing,
+        RateAndState,
         "oddness",
         friction=lambda law, v, memory, rates: (
-            Ageing.friction(law, abs(v), memory, rates) * (1.0 if v.real > 0.0 else -0.99)
+            RateAndState.friction(law, abs(v), memory, rates) * (1.0 if v.real > 0.0 else -0.99)
         ),
     ),
 )

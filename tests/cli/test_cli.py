@@ -17,10 +17,10 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from fake_methods import Fake, breaks_down
+from fake_methods import Fake, breaks_down, faked, register
 
 import frictionlab as fl
-from frictionlab import cli, registry
+from frictionlab import cli
 from frictionlab.bench import load_bench
 from frictionlab.charts import figures
 from frictionlab.registry.bibliography import read_bibtex
@@ -45,10 +45,7 @@ def _interrupts_are_heard() -> Iterator[None]:
 def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("frictionlab.runner.progress.QUIET", 600.0)  # a busy machine is slow
-    known = registry.method_class
-    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
-    names = registry.method_names()
-    monkeypatch.setattr(registry, "method_names", lambda: [*names, "fake"])
+    register(monkeypatch, fake=Fake)
     handler = signal.getsignal(signal.SIGTERM)
     yield
     signal.signal(signal.SIGTERM, handler)
@@ -67,16 +64,8 @@ def drawn() -> None:
 
 
 def study(name: str = "study.yaml", **changes: Any) -> str:
-    given = {
-        "schema": 1,
-        "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
-        | {"drive": {"unbalance": 10, "frequency": 1}},
-        "laws": [{"kind": "coulomb", "mu": 0.4}],
-        "methods": ["fake"],
-        "sweep": {"scene.belt_speed": POINTS},
-    }
     Path(name).parent.mkdir(parents=True, exist_ok=True)
-    Path(name).write_text(yaml_text(given | changes))
+    Path(name).write_text(yaml_text(faked(POINTS, **changes)))
     return name
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from memory_laws import Ageing, Elements
+from memory_laws import AGEING, Elements
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
@@ -33,8 +33,8 @@ def read(law: Any, v: Any, memory: Any, rates: Any) -> Any:
     [
         (THREE, 0.7, np.array([0.02, -0.01, 0.15])),
         (THREE, 0.7 - 0.2j, np.array([0.02 + 0j, -0.03 + 0.04j, 0.1j])),
-        (Ageing(), -1e-9, np.array([40.0])),
-        (Ageing(), 0.3 + 0.4j, np.array([0.02])),
+        (AGEING, -1e-9, np.array([40.0])),
+        (AGEING, 0.3 + 0.4j, np.array([0.02])),
     ],
 )
 def test_a_law_with_memory_is_the_same_interpreted_and_compiled(law: MemoryLaw, v: Any, memory: Any) -> None:
@@ -81,7 +81,7 @@ def which(law: Any, like: Any) -> Any:
 
 
 def test_kernels_take_the_body_made_for_the_kind_of_deflections() -> None:
-    cases = [(Coulomb(mu=0.4), 0j), (THREE, 0.0), (THREE, 0j), (Ageing(), 0.0), (Ageing(), 0j)]
+    cases = [(Coulomb(mu=0.4), 0j), (THREE, 0.0), (THREE, 0j), (AGEING, 0.0), (AGEING, 0j)]
 
     assert [compiled(which, law)(like) for law, like in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]
     assert [which.py_func(law, like) for law, like in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]

@@ -13,12 +13,11 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from fake_methods import Fake, breaks_down
+from fake_methods import Fake, breaks_down, register
 from pages import Page, complaints
 from run_folders import without_stamps
 
 import frictionlab as fl
-from frictionlab import registry
 from frictionlab.columns import _IN_SI, _NAMES
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.report import bibtex, tables, write_index, write_report
@@ -41,10 +40,7 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg"/>'
 
 @pytest.fixture(autouse=True)
 def _with_a_method_that_does_as_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    known = registry.method_class
-    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
-    names = registry.method_names()
-    monkeypatch.setattr(registry, "method_names", lambda: [*names, "fake"])
+    register(monkeypatch, fake=Fake)
 
 
 Runner = Callable[..., Saved]

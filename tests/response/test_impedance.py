@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from maxwell_slip import MaxwellSlip
-from memory_laws import Ageing
+from memory_laws import AGEING
+from rate_and_state import RateAndState
 from scipy.integrate import solve_ivp
 from scipy.optimize import newton
 
@@ -28,7 +29,7 @@ LUGRE, ELASTO_PLASTIC = fl.LuGre(**FALLING), fl.ElastoPlastic(**FALLING)
 SEVERAL = GeneralisedMaxwellSlip(
     share=[1, 2], stiffness=[10, 40], mu_kinetic=0.3, mu_static=0.4, attraction=3, viscosity=0.05
 )
-RATED: list[Any] = [fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), LUGRE, ELASTO_PLASTIC, SEVERAL, Ageing()]
+RATED: list[Any] = [fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), LUGRE, ELASTO_PLASTIC, SEVERAL, AGEING]
 """Laws whose friction of steady sliding changes with its speed."""
 ON_THE_PATH: list[Any] = [
     fl.Coulomb(mu=0.4),
@@ -133,7 +134,7 @@ def test_elasto_plastic_bristles_in_steady_sliding_are_those_of_lugre(speed: flo
         assert fl.impedance(law, speed, [0.0, 1.0, 50.0]) == pytest.approx(exact, rel=1e-9)
 
 
-@pytest.mark.parametrize("law", [LUGRE, ELASTO_PLASTIC, Ageing()])
+@pytest.mark.parametrize("law", [LUGRE, ELASTO_PLASTIC, AGEING])
 @pytest.mark.parametrize("across", [False, True])
 def test_it_is_the_answer_of_the_integrated_law_to_a_small_vibration(law: Any, across: bool) -> None:
     sizes, omega = 4e-3 * 0.5 ** np.arange(4), 1.7
@@ -240,7 +241,7 @@ class Bent(fl.SlidingLaw):
         return self.mu + max(speed - SPEED, 0.0)
 
 
-class Adrift(Ageing):
+class Adrift(RateAndState):
     """An age that is not that of steady sliding."""
 
     def steady(self, v: Any, k: int) -> Any:
@@ -252,8 +253,8 @@ class Adrift(Ageing):
     ("law", "speed", "frequencies", "why"),
     [
         (Bent(), SPEED, 1.0, r"Bent\(\) has a corner in steady sliding at this speed"),
-        (Adrift(), SPEED, 1.0, "does not vanish where steady puts its memory"),
-        (Ageing(), 0.0, 1.0, "no sliding to renew the memory"),
+        (Adrift(**AGEING.model_dump()), SPEED, 1.0, "does not vanish where steady puts its memory"),
+        (AGEING, 0.0, 1.0, "no sliding to renew the memory"),
         (fl.Coulomb(mu=0.4), 0.0, 1.0, "jumps where slip turns round; use fl.describing_function"),
         (LUGRE, math.nan, 1.0, "belt_speed must be finite numbers"),
         (LUGRE, 1.0, ["1"], "frequencies must be finite numbers"),

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from fake_methods import Another, Fake, breaks_down, is_broken, is_wrong
+from fake_methods import Another, Fake, breaks_down, faked, is_broken, is_wrong, register
 from pandas.testing import assert_frame_equal
 from run_folders import without_stamps
 
@@ -39,10 +39,7 @@ Trouble = Callable[[dict[float, Callable[[], None]]], None]
 
 @pytest.fixture(autouse=True)
 def _fake_methods(monkeypatch: pytest.MonkeyPatch) -> None:
-    known, names = registry.method_class, registry.method_names()
-    fakes: dict[str, Any] = {"fake": Fake, "another": Another}
-    monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
-    monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
+    register(monkeypatch, fake=Fake, another=Another)
 
 
 @pytest.fixture
@@ -51,15 +48,7 @@ def trouble(monkeypatch: pytest.MonkeyPatch) -> Trouble:
 
 
 def study(**changes: Any) -> dict[str, Any]:
-    given = {
-        "schema": 1,
-        "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
-        | {"drive": {"unbalance": 10, "frequency": 1}},
-        "laws": [{"kind": "coulomb", "mu": 0.4}],
-        "methods": ["fake"],
-        "sweep": {"scene.belt_speed": [4, 13, -2, 0, 17, 9]},
-    }
-    return given | changes
+    return faked([4, 13, -2, 0, 17, 9], **changes)
 
 
 SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from fake_methods import Fake
+from fake_methods import Fake, register
 from pandas.testing import assert_frame_equal
 from run_folders import without_stamps
 
 import frictionlab as fl
-from frictionlab import cli, registry
+from frictionlab import cli
 from frictionlab.charts import figures
 from frictionlab.printable import printable
 from frictionlab.runner.api import run_folder
@@ -54,9 +54,7 @@ FILES = ("results.parquet", "results.csv", "curves.csv", "orbits.parquet", "stud
 
 @pytest.fixture(autouse=True)
 def _solved_by_a_fake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    known, names = registry.method_class, registry.method_names()
-    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
-    monkeypatch.setattr(registry, "method_names", lambda: [*names, "fake"])
+    register(monkeypatch, fake=Fake)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "steady.py").write_text(LAW)
     (tmp_path / "mine.yaml").write_text(yaml_text(STUDY))

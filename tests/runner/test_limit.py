@@ -8,33 +8,22 @@ import time
 from typing import Any
 
 import pytest
-from fake_methods import Fake
+from fake_methods import Fake, faked, register
 
 import frictionlab as fl
-from frictionlab import registry
 from frictionlab.runner import limit
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.workers import OverLimit, Workers, within
 from frictionlab.study import StudyError, parse_study
 
-STUDY: dict[str, Any] = {
-    "schema": 1,
-    "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
-    | {"drive": {"unbalance": 10, "frequency": 1}},
-    "laws": [{"kind": "coulomb", "mu": 0.4}],
-    "methods": ["fake"],
-    "sweep": {"scene.belt_speed": [4, 5, 6, 7, 8]},
-    "limit": {"seconds_per_point": 0.3},
-}
+STUDY = faked([4, 5, 6, 7, 8], limit={"seconds_per_point": 0.3})
 
 
 @pytest.fixture
 def released(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The method takes for ever at a belt speed of 6, until the test is over."""
     event = threading.Event()
-    known = registry.method_class
-    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
-    monkeypatch.setattr(registry, "method_names", lambda: ["auto", "fake"])
+    register(monkeypatch, fake=Fake)
     monkeypatch.setattr(Fake, "troubles", {6.0: lambda: event.wait(60.0)})
     yield event
     event.set()

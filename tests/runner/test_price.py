@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from fake_methods import Another, Fake, register
+from fake_methods import Another, Fake, faked, register
 
 from frictionlab.compile.call import KernelCall, NotKept
 from frictionlab.methods.base import Answers
@@ -33,14 +33,7 @@ class Unknown(Another):
         raise NotKept(frozenset({"frictionlab_answer_curve_12ab"}))
 
 
-STUDY: dict[str, Any] = {
-    "schema": 1,
-    "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
-    | {"drive": {"unbalance": 10, "frequency": 1}},
-    "laws": [{"kind": "coulomb", "mu": 0.4}],
-    "methods": ["fake", "slow"],
-    "sweep": {"scene.belt_speed": {"start": 1, "stop": 10, "num": 30}},
-}
+STUDY = faked({"start": 1, "stop": 10, "num": 30}, methods=["fake", "slow"])
 
 
 @pytest.fixture(autouse=True)

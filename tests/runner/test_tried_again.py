@@ -4,31 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
-from fake_methods import Fake, breaks_down, is_wrong
+from fake_methods import Fake, breaks_down, faked, is_wrong, register
 
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.runner import code_digest
 
 Trouble = Callable[[dict[float, Callable[[], None]]], None]
-STUDY: dict[str, Any] = {
-    "schema": 1,
-    "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
-    | {"drive": {"unbalance": 10, "frequency": 1}},
-    "laws": [{"kind": "coulomb", "mu": 0.4}],
-    "methods": ["fake"],
-    "sweep": {"scene.belt_speed": [4, 9]},
-}
+STUDY = faked([4, 9])
 
 
 @pytest.fixture(autouse=True)
 def _fake_method(monkeypatch: pytest.MonkeyPatch) -> None:
-    known = registry.method_class
-    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
-    monkeypatch.setattr(registry, "method_names", lambda: ["auto", "fake"])
+    register(monkeypatch, fake=Fake)
 
 
 @pytest.fixture

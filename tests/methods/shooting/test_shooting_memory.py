@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from maxwell_slip import MaxwellSlip
-from memory_laws import Ageing, BrokenAway, Elements, elements
+from memory_laws import BrokenAway, Elements, elements
 from profiles import deep
+from rate_and_state import RateAndState
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
@@ -32,7 +33,7 @@ def driven(belt_speed: float, damping: float = 0.4) -> fl.Scene:
     return fl.Scene(damping_ratio=damping, normal_load=10, belt_speed=belt_speed, drive=drive)
 
 
-def by_lsoda(scene: fl.Scene, law: Ageing, periods: int) -> float:
+def by_lsoda(scene: fl.Scene, law: RateAndState, periods: int) -> float:
     """The mean friction of the last of so many periods, with the interpreted law; slip is integrated as such."""
     mass = scene.mass()
     span = 2.0 * math.pi / mass.frequency
@@ -155,7 +156,7 @@ def test_equal_elements_are_jenkins_friction_under_a_prescribed_slip(
     assert found.energy_contact == pytest.approx(known.energy_contact, rel=1e-3)
 
 
-SLIPPERY = Ageing(a=0.03, b=0.02)
+SLIPPERY = RateAndState(mu=0.4, a=0.03, b=0.02, slip_length=0.05)
 TAKING_NOTHING_BACK = Elements(stiffness=THREE.stiffness, reach=THREE.reach)
 
 
@@ -170,10 +171,10 @@ TAKING_NOTHING_BACK = Elements(stiffness=THREE.stiffness, reach=THREE.reach)
     ],
 )
 def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
-    law: Ageing | MaxwellSlip | Elements, belt_speed: float
+    law: RateAndState | MaxwellSlip | Elements, belt_speed: float
 ) -> None:
     scene = driven(belt_speed)
-    known = by_lsoda(scene, law, 14) if isinstance(law, Ageing) else by_legs(scene, law, 14)
+    known = by_lsoda(scene, law, 14) if isinstance(law, RateAndState) else by_legs(scene, law, 14)
 
     for tolerance in TOLERANCES:
         found = fl.steady_state(scene, law, tolerance=tolerance)

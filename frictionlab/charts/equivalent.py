@@ -26,7 +26,9 @@ def equivalent_figure(table: pd.DataFrame, curves: pd.DataFrame) -> Figure:
         axes.set(xlabel=word("scene.belt_speed"), ylabel=word("mean_friction"))
         if varied:
             over = table.columns[0]
-            axes.set_title(f"{word(f'scene.{over}')}: {table[over].iloc[0]:g}", loc="left")
+            axes.set_title(
+                f"{word(f'scene.{over}')}: {table[over][table['distance'].first_valid_index()]:g}", loc="left"
+            )
             axes = sheet.axes(1)
             for name, label, mark in (("distance", "distance", "o"), ("rms", "root mean square", "s")):
                 axes.plot(table[over], np.asarray(table[name]), color="0.25", marker=mark, label=label)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -34,7 +34,8 @@ class Equivalent:
 
     values: its free numbers. distance: of mean friction coefficients at the belt speeds, the largest or the root mean
     square, as asked; distance_error: bound on its error from those of both curves; at: the belt speed of the
-    largest; rms: the root mean square. table: a row for each value of what was varied. curves: both, row by row.
+    largest; rms: the root mean square. table: a row for each value of what was varied, or the reason
+    why there is no answer. curves: both, row by row.
     """
 
     values: dict[str, float]
@@ -74,7 +75,7 @@ def equivalent(
     of: a scene and a law. among: another scene and law, and ranges of its free numbers as for ``fit``. belt_speed:
     40 up to 1.2 V_lin where left out. norm: whether the largest distance is made small, or its root mean square.
     over: one input of both scenes and its values, such as ``{"drive.frequency": [1, 1.5]}``: the numbers are found
-    anew for each; what is told beside the table is the first.
+    anew for each; what is told beside the table is the first that has an answer.
 
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
@@ -83,7 +84,7 @@ def equivalent(
     >>> round(found.values["mu"], 6), found.distance < 1e-7
     (0.4, True)
 
-    Raises ValueError or TypeError for what makes no sense, or where a curve has no mean friction.
+    Raises ValueError or TypeError for what makes no sense, or where no pair of curves has a mean friction everywhere.
     """
     if norm not in ("largest", "rms"):
         raise ValueError(f"norm must be 'largest' or 'rms', got {norm!r}")
@@ -93,23 +94,23 @@ def equivalent(
     if over is not None and len(over) != 1:
         raise ValueError(f"over must name one input, such as {{'drive.frequency': [1, 1.5]}}, got {over!r}")
     path, values = next(iter(over.items())) if over else ("", [math.nan])
-    rows, first = [], None
+    rows: list[dict[str, Any]] = []
+    first, why = None, None
     for value in values:
         scenes = [_changed(scene, path, value) for scene in (one, other)]
-        found = _nearest(scenes[0], laws[0], Model(laws[1], scenes[1], free), belt_speed, norm, starts)
+        rows.append({path: value} if path else {})
+        try:
+            found = _nearest(scenes[0], laws[0], Model(laws[1], scenes[1], free), belt_speed, norm, starts)
+        except ValueError as none:
+            why = none
+            rows[-1]["reason"] = str(none)
+            continue
         first = first or found
-        own = {path: value} if path else {}
-        rows.append(
-            own
-            | found.values
-            | {"distance": found.distance, "distance_error": found.distance_error}
-            | {"at": found.at, "rms": found.rms}
-        )
-    assert first is not None
-    table = pd.DataFrame(rows)
-    return Equivalent(
-        first.values, first.distance, first.distance_error, first.at, first.rms, table, first.curves
-    )
+        numbers = {name: getattr(found, name) for name in ("distance", "distance_error", "at", "rms")}
+        rows[-1] |= found.values | numbers
+    if first is None:
+        raise why or ValueError("over must have a value")
+    return replace(first, table=pd.DataFrame(rows))
 
 
 def _changed(scene: Scene, path: str, value: float) -> Scene:

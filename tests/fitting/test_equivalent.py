@@ -78,6 +78,23 @@ def test_numbers_are_found_anew_over_an_input() -> None:
     assert len(found.plot().axes) == 2
 
 
+def test_where_a_body_has_two_motions_the_reason_stands_in_its_row() -> None:
+    """A stiff Dahl contact keeps reversing above V_lin when it started so, beside steady sliding."""
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=20, belt_speed=1, drive=fl.Drive(amplitude=10, frequency=4)
+    )
+    law, speeds = fl.Dahl(mu=0.4, presliding_length=0.0666), [1.0, 40 / abs(complex(15, 0.8))]
+    among = scene, fl.Coulomb(mu=0.4), {"mu": (0.1, 1.0)}
+    found = fl.equivalent((scene, law), among, speeds, over={"drive.frequency": [4, 1]}, starts=1)
+
+    assert "not_unique" in found.table["reason"][0]
+    assert found.table["distance"].isna().tolist() == [True, False]
+    assert found.distance == found.table["distance"][1]
+    assert found.plot().axes[0].get_title(loc="left").endswith(": 1")
+    with pytest.raises(ValueError, match="not_unique"):
+        fl.equivalent((scene, law), among, speeds, starts=1)
+
+
 def test_bad_questions_are_told() -> None:
     with pytest.raises(ValueError, match="norm must be 'largest' or 'rms', got 'mean'"):
         fl.equivalent((SCENE, fl.Coulomb(mu=0.4)), SOFT, norm="mean")  # type: ignore[arg-type]

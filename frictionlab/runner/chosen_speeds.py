@@ -23,6 +23,9 @@ from frictionlab.theory import friction_free_velocity
 Known = tuple[Floats, Floats, Floats]
 """Belt speeds of a curve, ascending, their mean friction and its error; NaN where there is no number."""
 
+SHARES = (0.025, 0.05, *(0.1 * k for k in range(1, 10)))
+"""Of V_lin: what the shape of a curve is read from where no more belt speeds are asked for."""
+
 
 @dataclass(frozen=True)
 class Round:
@@ -115,9 +118,16 @@ def _named(study: Study, along: SpeedRange) -> Floats:
 
 
 def _first(along: SpeedRange, breaks: Floats, named: Floats) -> Floats:
-    """Evenly spaced belt speeds, and V_lin and those named in place of any that are nearly there."""
+    """Evenly spaced belt speeds, and V_lin and those named in place of any that are nearly there.
+
+    Of a curve that bends within few of them also shares of V_lin, from which its shape can be read.
+    """
     even, near = np.array(along.first()), CLOSEST * (along.stop - along.start)
-    wanted = np.unique(np.concatenate([breaks, named]))
+    below = [
+        share * each for each in breaks if (np.abs(even) < abs(each)).sum() < len(SHARES) for share in SHARES
+    ]
+    inside = [each for each in below if along.start + near < each < along.stop - near]
+    wanted = np.unique(np.concatenate([breaks, named, inside]))
     far = [bool((np.abs(wanted - each) > near).all()) for each in even]
     return np.union1d(even[far], wanted)
 

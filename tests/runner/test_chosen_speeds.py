@@ -218,3 +218,12 @@ def test_mistakes_are_told(sweep: dict[str, Any], said: str) -> None:
         parse_study(STUDY | {"sweep": sweep, "scene": SCENE | {"belt_speed": 1}})
     assert said in str(problem.value)
     assert len(problem.value.mistakes) == 1
+
+
+def test_a_curve_that_ends_within_a_sixteenth_of_the_range_has_a_shape() -> None:
+    drive = fl.Drive(amplitude=1, frequency=4)
+    scene = fl.Scene(damping_ratio=0.1, normal_load=0.1, belt_speed=1, drive=drive)  # V_lin = 0.27
+    sweep = {"scene.belt_speed": {"start": 0.001, "stop": 10, "within": 1e-2}}
+    curves = fl.run(fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep=sweep, columns=["shape"])).curves
+
+    assert curves[["shape", "shape_by_initial"]].to_numpy().tolist() == [["convex", "convex"]]

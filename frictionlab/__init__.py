@@ -63,6 +63,7 @@ _HOMES = {
     "Transverse": "frictionlab.scene.scene",
     "TransverseSlip": "frictionlab.scene.scene",
     "attractors": "frictionlab.runner.api",
+    "best_waveform": "frictionlab.fitting.best_waveform",
     "compare": "frictionlab.notebook.comparison",
     "curve": "frictionlab.runner.api",
     "describing_function": "frictionlab.response.describing",

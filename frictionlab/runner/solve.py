@@ -136,7 +136,8 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
         from frictionlab.orbit.energy_errors import Means
         from frictionlab.orbit.read import read_columns  # brings numba: only where it is needed
 
-        means = Means(answers.mean.real, answers.error, answers.balanced)
+        asks_errors = any(name.endswith("_error") for name in wanted)
+        means = Means(answers.mean.real, answers.error, answers.balanced) if asks_errors else None
         found |= read_columns(scenes, answers.orbit, answers.orbits, means)
     spent = time.perf_counter() - seconds_compiling() - start
     found["seconds"] = found["seconds"] + spent / len(scenes)

@@ -221,11 +221,16 @@ def _combined(waves: Floats, pieces: Floats, side: float, piece: Any, r: Floats)
     a, b, c = (side * pieces[piece, PARABOLA + k] for k in range(3))
     a, b = a + pieces[piece, RAMP], b + pieces[piece, RAMP + 1]
     value, rate, bend = a + r * (b + 0.5 * r * c), b + r * c, c + 0.0 * r
-    for wave in waves:
-        w, angle = wave[FREQUENCY], wave[FREQUENCY] * (pieces[piece, START] + r)
-        in_phase, quadrature = (wave[PRESS + k] + side * wave[LOAD + k] for k in range(2))
-        sine, cosine = np.sin(angle), np.cos(angle)
-        now = in_phase * sine + quadrature * cosine
-        value, bend = value + now, bend - w * w * now
-        rate = rate + w * (in_phase * cosine - quadrature * sine)
+    frequency, *sizes = (
+        column.reshape(-1, *[1] * np.ndim(r))
+        for column in (
+            waves[:, FREQUENCY],
+            *(waves[:, PRESS + k] + side * waves[:, LOAD + k] for k in range(2)),
+        )
+    )
+    angle = frequency * (pieces[piece, START] + r)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    now = sizes[0] * sine + sizes[1] * cosine
+    value, bend = value + now.sum(axis=0), bend - (frequency**2 * now).sum(axis=0)
+    rate = rate + (frequency * (sizes[0] * cosine - sizes[1] * sine)).sum(axis=0)
     return value, rate, bend

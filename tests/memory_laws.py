@@ -19,26 +19,8 @@ def elements(stiffness: tuple[float, ...], reach: tuple[float, ...]) -> MaxwellS
     return MaxwellSlip(mu=[k * z for k, z in zip(stiffness, reach, strict=True)], stiffness=stiffness)
 
 
-class Elements(MemoryLaw):
-    """The same friction by other rates: a slider drags its spring and never takes back what a step overshot.
-
-    stiffness [1/scene length], reach [scene length], > 0: of each element; as many of both.
-    Sources: Iwan (1966), J. Appl. Mech. 33, 893; in the plane each slider is dragged as by a rope.
-    """
-
-    stiffness: tuple[Positive, ...]
-    reach: tuple[Positive, ...]
-
-    def sliding_friction(self, speed: float) -> float:
-        """All sliders move."""
-        total = 0.0
-        for k in range(len(self.stiffness)):
-            total += self.stiffness[k] * self.reach[k]
-        return total
-
-    def count(self) -> int:
-        """One deflection for each element."""
-        return len(self.stiffness)
+class Elements(MaxwellSlip):
+    """The same friction by other rates, of which nothing is declared: what a step overshot is never taken back."""
 
     def rate(self, v: Any, memory: Any, k: int) -> Any:
         """v, less its part along the spring where that is stretched to its reach."""
@@ -48,49 +30,9 @@ class Elements(MemoryLaw):
             return v
         return v - (along / (z * z.conjugate()).real) * z
 
-    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """The springs'."""
-        total = 0.0 * v
-        for k in range(len(self.stiffness)):
-            total = total + self.stiffness[k] * memory[k]
-        return total
-
-    def steady(self, v: Any, k: int) -> Any:
-        """At its reach."""
-        return self.reach[k] * (v / abs(v))
-
-    def constant_sliding_friction(self) -> bool:
-        """Always."""
-        return True
-
-    def largest_rate(self, speed: float) -> float:
-        """Of the stiffest, where it turns towards the slip."""
-        quickest = 0.0
-        for k in range(len(self.reach)):
-            quickest = max(quickest, speed / self.reach[k])
-        return quickest
-
-    def within(self, memory: Any) -> bool:
-        """No spring is stretched further than it reaches."""
-        inside = True
-        for k in range(len(self.reach)):
-            inside = inside and abs(memory[k]) <= self.reach[k] * (1.0 + 1e-9)
-        return inside
-
-    def rate_independent(self) -> bool:
-        """Always."""
-        return True
-
-    def passive(self) -> bool:
-        """Always."""
-        return True
-
-    def stored(self, memory: Any) -> float:
-        """In the springs."""
-        total = 0.0
-        for k in range(len(self.stiffness)):
-            total += 0.5 * self.stiffness[k] * abs(memory[k]) ** 2
-        return total
+    def yield_deflection(self, k: int) -> float:
+        """Not told."""
+        return math.inf
 
 
 class BrokenAway(MemoryLaw):

@@ -2,36 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from typing import Any
 
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
-from memory_laws import Elements
-from pydantic import Field, model_validator
+from maxwell_slip import MaxwellSlip
 from rate_and_state import RateAndState
 
 from broken_laws.case import Case, bug
 from frictionlab.laws.base import Positive
-from frictionlab.laws.compliant import Length, Stiffness
-
-
-class Springs(Elements):
-    """Maxwell-slip friction that refuses lists of two lengths, and knows its units."""
-
-    stiffness: Annotated[tuple[Stiffness, ...], Field(min_length=1)]
-    reach: Annotated[tuple[Length, ...], Field(min_length=1)]
-
-    @model_validator(mode="after")
-    def _as_many_of_both(self) -> Self:
-        if len(self.reach) != len(self.stiffness):
-            raise ValueError("reach: as many values as stiffness")
-        return self
-
-
-class Declared(Springs):
-    """The same, its yield surfaces declared."""
-
-    def yield_deflection(self, k: int) -> float:
-        return self.reach[k]
 
 
 class Unscaled(RateAndState):
@@ -45,7 +23,7 @@ class Sticking(GeneralisedMaxwellSlip):
     """Elements that remember whether they stick."""
 
 
-class BreaksAwayUnasked(Springs):
+class BreaksAwayUnasked(MaxwellSlip):
     """Sliders that break away, though nothing remembers it."""
 
     def breakaway(self, v: Any, k: int) -> float:
@@ -55,35 +33,36 @@ class BreaksAwayUnasked(Springs):
 def by_axis(law: Any, v: Any, memory: Any, k: int) -> Any:
     """In the plane two laws of one direction."""
     if not isinstance(v, complex):
-        return Springs.rate(law, v, memory, k)
+        return MaxwellSlip.rate(law, v, memory, k)
     one, two = ([each.real for each in memory], [each.imag for each in memory])
-    return complex(Springs.rate(law, v.real, one, k), Springs.rate(law, v.imag, two, k))
+    return complex(MaxwellSlip.rate(law, v.real, one, k), MaxwellSlip.rate(law, v.imag, two, k))
 
 
 def in_series(law: Any, v: Any, memory: Any, k: int) -> Any:
     """Less slip where the element before has reached half way."""
     share = 0.5 if k > 0 and abs(memory[k - 1]) > 0.5 * law.reach[k - 1] else 1.0
-    return Springs.rate(law, share * v, memory, k)
+    return MaxwellSlip.rate(law, share * v, memory, k)
 
 
 CASES = (
     bug(  # backward springs bend for ever
         "SignedElements",
-        Springs,
+        MaxwellSlip,
         "oddness",
-        rate=lambda law, v, memory, k: v if memory[k].real < 0.0 else Springs.rate(law, v, memory, k),
+        rate=lambda law, v, memory, k: v if memory[k].real < 0.0 else MaxwellSlip.rate(law, v, memory, k),
     ),
-    bug("BackwardsLost", Springs, "invariant_set", rate=lambda law, v, memory, k: v),  # sliders never let go
-    bug("ElementsApart", Springs, "rotation", rate=by_axis),
+    # sliders never let go
+    bug("BackwardsLost", MaxwellSlip, "invariant_set", rate=lambda law, v, memory, k: v),
+    bug("ElementsApart", MaxwellSlip, "rotation", rate=by_axis),
     bug(  # all but the first spring drag their sliders at nine tenths of what is declared
         "SecondYieldsEarly",
-        Declared,
+        MaxwellSlip,
         "yield_deflection",
-        rate=lambda law, v, memory, k: Springs.rate(
+        rate=lambda law, v, memory, k: MaxwellSlip.rate(
             law, v, [z / 0.9 for z in memory] if k > 0 else memory, k
         ),
     ),
-    bug("InSeries", Springs, "uncoupled", rate=in_series),
+    bug("InSeries", MaxwellSlip, "uncoupled", rate=in_series),
     bug(
         "BreaksAwayLate",
         Sticking,
@@ -98,7 +77,12 @@ CASES = (
     ),
     bug("YieldsToo", Sticking, "breakaway", yield_deflection=lambda law, k: law.breakaway(0.0, k)),
     Case(BreaksAwayUnasked, Sticking, "breakaway"),
-    bug("StoresTwice", Springs, "passivity", stored=lambda law, memory: 0.5 * Springs.stored(law, memory)),
+    bug(
+        "StoresTwice",
+        MaxwellSlip,
+        "passivity",
+        stored=lambda law, memory: 0.5 * MaxwellSlip.stored(law, memory),
+    ),
     Case(Unscaled, RateAndState, "unit_scaling"),
     bug(
         "SteadyTwice",

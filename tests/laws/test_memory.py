@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from memory_laws import AGEING, Elements
+from memory_laws import AGEING, elements
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
@@ -15,7 +15,7 @@ from frictionlab.compile.dispatch import by_law
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.memory import MemoryLaw
 
-THREE = Elements(stiffness=(5.0, 3.0, 1.0), reach=(0.02, 0.05, 0.2))
+THREE = elements(stiffness=(5.0, 3.0, 1.0), reach=(0.02, 0.05, 0.2))
 
 
 @njit
@@ -47,7 +47,7 @@ def test_a_law_with_memory_is_the_same_interpreted_and_compiled(law: MemoryLaw, 
 
 
 def test_elements_of_every_number_run_in_a_kernel_of_their_own() -> None:
-    two = Elements(stiffness=(1.0, 2.0), reach=(0.1, 0.2))
+    two = elements(stiffness=(1.0, 2.0), reach=(0.1, 0.2))
     read_two, read_three = compiled(read, two), compiled(read, THREE)
 
     assert read_two(0.5, np.zeros(2), np.zeros(2))[0] == 0.0

@@ -10,7 +10,7 @@ from answered import with_columns
 from draws_of_every_kind import every_kind
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from memory_laws import Elements
+from memory_laws import elements
 from profiles import DEEP, deep
 from strategies import sizes
 
@@ -297,7 +297,7 @@ def test_a_spring_in_series_with_coulomb_friction_yields_at_the_limit_of_the_mom
 
 def test_laws_of_several_memories_keep_no_constant_stiffness():
     scene = Scene(**LINE, drive=DRIVE, **pressed("constant"))
-    said = March().refusal(scene, Elements(stiffness=(1.0, 3.0), reach=(0.2, 0.1)))
+    said = March().refusal(scene, elements(stiffness=(1.0, 3.0), reach=(0.2, 0.1)))
     assert said is not None
     assert "give per_load" in said
     assert March().refusal(scene, DAHL) is None

@@ -28,7 +28,10 @@ MOST_STEPS_OF_A_PERIOD = 3_000_000
 
 
 class Body(NamedTuple):
-    """x_i'' + damping_i x_i' + stiffness_i x_i = load_i - normal load * friction_i; held still if not free."""
+    """x_i'' + damping_i x_i' + stiffness_i x_i = load_i - normal load * friction_i; held still if not free.
+
+    Along x1 spring and dashpot follow the strain x + curvature x^2; cubic and amplitude: k x^3 and c x^2 x' besides.
+    """
 
     free: bool
     planar: bool
@@ -37,6 +40,9 @@ class Body(NamedTuple):
     damping2: float
     stiffness2: float
     quickest: float
+    cubic: float = 0.0
+    amplitude: float = 0.0
+    curvature: float = 0.0
 
 
 class Friction(NamedTuple):
@@ -133,10 +139,24 @@ def bristle(law, phase, w1, w2, z1, z2, line):
 
 
 @numba.njit(cache=True)
+def dashed(body, x, v):
+    """Force of the dashpots along x1."""
+    stretch = 1.0 + 2.0 * body.curvature * x
+    return (body.damping1 * stretch * stretch + body.amplitude * x * x) * v
+
+
+@numba.njit(cache=True)
+def sprung(body, x):
+    """Force of the springs along x1."""
+    strain, stretch = x + body.curvature * x * x, 1.0 + 2.0 * body.curvature * x
+    return body.stiffness1 * strain * stretch + body.cubic * x**3
+
+
+@numba.njit(cache=True)
 def needed(body, now, t, y):
     """What accelerates the mass beyond the belt if friction does not: its two components."""
     s, pull1, pull2 = signals_at(now, t)
-    one = s[LOAD1] - body.damping1 * (y[W1] + s[BELT1]) - body.stiffness1 * y[X1] - pull1
+    one = s[LOAD1] - dashed(body, y[X1], y[W1] + s[BELT1]) - sprung(body, y[X1]) - pull1
     two = s[LOAD2] - body.damping2 * (y[W2] + s[BELT2]) - body.stiffness2 * y[X2] - pull2
     return one, two, s[NORMAL]
 
@@ -149,7 +169,7 @@ def rates(body, law, now, phase, t, y, out):
     if not body.free:
         w1, w2 = -s[BELT1], -s[BELT2]
     n = s[NORMAL]
-    net1 = s[LOAD1] - body.damping1 * (w1 + s[BELT1]) - body.stiffness1 * y[X1] - pull1
+    net1 = s[LOAD1] - dashed(body, y[X1], w1 + s[BELT1]) - sprung(body, y[X1]) - pull1
     net2 = s[LOAD2] - body.damping2 * (w2 + s[BELT2]) - body.stiffness2 * y[X2] - pull2
     dz1, dz2 = 0.0, 0.0
     if law.kind >= DAHL:
@@ -172,7 +192,7 @@ def rates(body, law, now, phase, t, y, out):
     out[Z1], out[Z2] = dz1, dz2
     out[IMPULSE1], out[IMPULSE2] = n * c1, n * c2
     out[INPUT] = s[LOAD1] * v1 + s[LOAD2] * v2
-    out[VISCOUS] = body.damping1 * v1 * v1 + body.damping2 * v2 * v2
+    out[VISCOUS] = dashed(body, y[X1], v1) * v1 + body.damping2 * v2 * v2
     out[FRICTION] = n * (c1 * v1 + c2 * v2)
     out[CONTACT] = n * (c1 * w1 + c2 * w2)
     return c1

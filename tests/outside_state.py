@@ -89,6 +89,10 @@ def body(scene: dict[str, Any]) -> Body:
         2.0 * across.get("damping_ratio", 0.0) * natural,
         natural**2,
         max(1.0, natural if across else 0.0, 2.0 * scene.get("damping_ratio", 0.0)),
+        *(
+            scene.get("body", {}).get(name, 0.0)
+            for name in ("cubic_stiffness", "amplitude_damping", "curvature")
+        ),
     )
 
 

@@ -229,7 +229,15 @@ def by_contact(of_any_load: Any, of_constant_stiffness: Any) -> Any:
     return _by_field("keeps_stiffness", of_any_load, of_constant_stiffness)
 
 
-def _by_field(name: str, of_empty: Any, of_filled: Any) -> Any:
+def by_springs(of_linear: Any, of_bent: Any) -> Any:
+    """The same, chosen by the field ``bends``, of arithmetic that never meets NaN or infinity on purpose.
+
+    of_linear: for a body whose springs and dashpots are linear.
+    """
+    return _by_field("bends", of_linear, of_bent, **INNER, fastmath=True)
+
+
+def _by_field(name: str, of_empty: Any, of_filled: Any, **options: Any) -> Any:
     """By whether a field of the first argument is filled: its own, or that of what varies or of the body it holds."""
 
     def chosen(*arguments: Any) -> Any:
@@ -239,7 +247,7 @@ def _by_field(name: str, of_empty: Any, of_filled: Any) -> Any:
         return of_filled if _is_filled(types[0], name) else of_empty
 
     of_empty, of_filled = (getattr(body, "py_func", body) for body in (of_empty, of_filled))
-    return _overloaded(chosen, resolve, (of_empty, of_filled))
+    return _overloaded(chosen, resolve, (of_empty, of_filled), **options)
 
 
 def _held(record: Any, name: str) -> Any:

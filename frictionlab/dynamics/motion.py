@@ -12,8 +12,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from frictionlab.compile.decorators import fast, fast_embedded, inner
-from frictionlab.compile.dispatch import by_dimension, by_variation, compilable, length
+from frictionlab.compile.dispatch import by_dimension, by_springs, by_variation, compilable, length
 from frictionlab.compile.law_lanes import friction_by_lane
 from frictionlab.compile.stack import items_of
 from frictionlab.dynamics.events import reference_acceleration
@@ -29,7 +31,17 @@ from frictionlab.scene import body as _plain
 from frictionlab.scene.body import BodyNumbers
 from frictionlab.scene.varying import PER_PIECE, Course, Packed
 
-restoring_force = fast(_plain.restoring_force)
+linear_force = fast(_plain.restoring_force)
+_bent_force = fast(compilable(_plain.bent_force))
+restoring_force = by_springs(_plain.restoring_force, _bent_force)
+"""restoring_force(body, x, v): of springs and dashpots, per unit mass."""
+dissipated = by_springs(
+    lambda body, x, v: linear_force(body, 0.0 * v, v),
+    lambda body, x, v: _bent_force(body, x, v) - _bent_force(body, x, 0.0 * v),
+)
+"""dissipated(body, x, v): of dashpots alone."""
+slopes_at = by_springs(lambda body, x, v: body, _plain.bent_slopes)
+"""slopes_at(body, x, v): the linear body beside this motion, where ``restoring_force`` is that of small changes."""
 span = fast(_plain.span)
 planar = inner(compilable(_plain.in_the_plane))
 """The body of a mass in the plane."""
@@ -255,7 +267,7 @@ def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
     return BodyNumbers(
         body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
         body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
-        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying,
+        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying, body.bends,
     )  # fmt: skip
 
 
@@ -353,25 +365,87 @@ def holding_force(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) ->
     pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
     jerk = belt_jerk(body, belt_speed, now) + 0.0 * x
     rate, bend = load_rates(body, now)
+    beside = slopes_at(body, x, carried)
+    bend = bend - _turning(body, x, carried, pushed)
     return (
         load(body, now) - restoring_force(body, x, carried) - pushed,
-        rate - restoring_force(body, carried, pushed) - jerk,
-        bend - restoring_force(body, pushed, jerk) - belt_snap(body, belt_speed, now),
+        rate - restoring_force(beside, carried, pushed) - jerk,
+        bend - restoring_force(beside, pushed, jerk) - belt_snap(body, belt_speed, now),
     )
 
 
-def _bound_on_a_vibrating_belt(body: BodyNumbers, belt_speed: float) -> float:
-    first, second, third = (
-        wave_bound(body.varying.table, body.varying.belt, 1),
-        wave_bound(body.varying.table, body.varying.belt, 2),
-        wave_bound(body.varying.table, body.varying.belt, 3),
-    )
-    springs = (body.stiffness_mean + abs(body.stiffness_split)) * first
-    return load_curvature(body) + springs + (body.damping_mean + abs(body.damping_split)) * second + third
+_belt_bound = by_variation(
+    lambda body, order: 0.0, lambda body, order: wave_bound(body.varying.table, body.varying.belt, order)
+)
+"""_belt_bound(body, order): on this derivative of the belt's velocity, at any time."""
 
 
-holding_curvature = by_variation(lambda body, belt_speed: load_curvature(body), _bound_on_a_vibrating_belt)
-"""holding_curvature(body, belt_speed): a bound on the second derivative of that force."""
+def _turning_of_bends(body: BodyNumbers, x: Any, v: Any, a: Any) -> Any:
+    x1, v1, bends = x.real, v.real, body.bends
+    spring = 2.0 * bends.spring_2 + 6.0 * bends.spring_3 * x1 + 2.0 * bends.dashpot_2 * v1
+    return (spring * v1 + 2.0 * (bends.dashpot_1 + 2.0 * bends.dashpot_2 * x1) * a.real) * v1
+
+
+_turning = by_springs(lambda body, x, v, a: 0.0, _turning_of_bends)
+"""_turning(body, x, v, a): second derivative of the restoring force of a motion along which slopes do not change."""
+
+look_ahead = by_springs(lambda body: 1e300, lambda body: 0.25 / quickest_of(body))
+"""look_ahead(body): the time at rest within which ``holding_curvature`` at a position holds."""
+
+
+def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
+    """By the largest sizes of position, velocity and its derivatives within the time that is looked ahead."""
+    bends, v = body.bends, abs(belt_speed) + belt_swing(body)
+    most, a, jerk = abs(x.real) + v * look_ahead(body), _belt_bound(body, 1), _belt_bound(body, 2)
+    first, second = abs(bends.dashpot_1), abs(bends.dashpot_2)
+    spring_2, spring_3 = abs(bends.spring_2), abs(bends.spring_3)
+    turning = (2.0 * spring_2 + 6.0 * spring_3 * most + 2.0 * second * v) * v
+    turning = (turning + 2.0 * (first + 2.0 * second * most) * a) * v
+    by_spring = (2.0 * spring_2 + 3.0 * spring_3 * most) * most + (first + 2.0 * second * most) * v
+    return turning + by_spring * a + (first + second * most) * most * jerk
+
+
+_more = by_springs(lambda body, belt_speed, x: 0.0, _more_of_bends)
+
+
+@inner
+def holding_curvature(body: BodyNumbers, belt_speed: float, x: Any) -> float:
+    """A bound on the second derivative of that force, of a mass that is at x now."""
+    springs = (body.stiffness_mean + abs(body.stiffness_split)) * _belt_bound(body, 1)
+    dashpots = (body.damping_mean + abs(body.damping_split)) * _belt_bound(body, 2)
+    return load_curvature(body) + springs + dashpots + _belt_bound(body, 3) + _more(body, belt_speed, x)
+
+
+GAUSS = np.array([0.0, 0.5384693101056831, 0.906179845938664])
+GAUSS_WEIGHTS = np.array([0.5688888888888889, 0.47862867049936647, 0.23692688505618908])
+"""Of five nodes, those from the middle on."""
+
+
+@inner
+def _bent_spring(body: BodyNumbers, belt_speed: float, start: float, tau: float, x: Any) -> float:
+    x1 = (x + belt_path(body, belt_speed, start, tau)).real
+    return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 * x1
+
+
+def _impulse_of_bends(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
+    """Dashpots by the way, springs by Gauss: exact on a belt that does not vibrate, else to rounding."""
+    bends, first, last = body.bends, x.real, (x + belt_path(body, belt_speed, start, end)).real
+    half, third = 0.5 * bends.dashpot_1, bends.dashpot_2 / 3.0
+    impulse = (half + third * last) * last * last - (half + third * first) * first * first
+    parts = _parts(body, end - start)
+    step = 0.5 * (end - start) / parts
+    for k in range(parts):
+        middle = start + (2 * k + 1) * step
+        for i in range(GAUSS.size):
+            share = GAUSS_WEIGHTS[i] * step * (0.5 if i == 0 else 1.0)
+            for side in (-1.0, 1.0):
+                impulse += share * _bent_spring(body, belt_speed, start, middle + side * GAUSS[i] * step, x)
+    return impulse
+
+
+_parts = by_variation(lambda body, lasts: 1, lambda body, lasts: 1 + int(8.0 * quickest_of(body) * lasts))
+_bent_impulse = by_springs(lambda body, belt_speed, start, end, x: 0.0 * x, _impulse_of_bends)
+"""_bent_impulse(body, belt_speed, start, end, x): the integral of what bends add to the restoring force."""
 
 
 @inner
@@ -381,7 +455,8 @@ def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: flo
     positions = (end - start) * x + belt_path_integral(body, belt_speed, start, end)
     first, last = instant_at(body, start), instant_at(body, end)
     gained = belt_velocity(body, belt_speed, last) - belt_velocity(body, belt_speed, first)
-    return load_impulse(body, start, end) - restoring_force(body, positions, way) - gained
+    springs = linear_force(body, positions, way) + _bent_impulse(body, belt_speed, start, end, x)
+    return load_impulse(body, start, end) - springs - gained
 
 
 @inner
@@ -451,13 +526,55 @@ def reference_velocity(body: BodyNumbers, sine: float, cosine: float) -> Any:
     return body.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
 
 
+free_sine = by_springs(lambda body: body.reference_sine, lambda body: body.reference_sine + body.bends.sine)
+free_cosine = by_springs(
+    lambda body: body.reference_cosine, lambda body: body.reference_cosine + body.bends.cosine
+)
+"""free_sine(body), free_cosine(body): of the motion without friction, about where bodies are not linear."""
+
+
 @inner
 def swing_of(body: BodyNumbers) -> float:
     """The speed of the friction-free response against the belt's mean; 1 where it has no bound."""
-    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
-        body
-    )
+    swing = body.frequency * math.hypot(abs(free_sine(body)), abs(free_cosine(body))) + belt_swing(body)
     return swing if swing > 0.0 else 1.0
+
+
+def _pushed_away(body: BodyNumbers, x: Any) -> bool:
+    """Where springs push outward with a million times the force by which the linear one would pull back."""
+    x1 = x.real
+    return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 < -1e6 * body.stiffness_mean
+
+
+runs_away = by_springs(lambda body, x: False, _pushed_away)
+"""runs_away(body, x): whether a mass there never comes back."""
+
+
+def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
+    """On the side on which springs stretch to hold the force, the first place where there are several."""
+    missing = force - linear_force(body, 0.0, v)
+    side, low = math.copysign(1.0, missing), 0.0
+    high = abs(missing) / (body.stiffness_mean + body.stiffness_split)
+    for _ in range(120):
+        if side * (restoring_force(body, side * high, v).real - force) >= 0.0:
+            break
+        low, high = high, 1.25 * high + 1e-300
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        if side * (restoring_force(body, side * middle, v).real - force) >= 0.0:
+            high = middle
+        else:
+            low = middle
+    return side * high
+
+
+def _linear_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
+    held = force - (body.damping_mean + body.damping_split) * v
+    return held / (body.stiffness_mean + body.stiffness_split)
+
+
+equilibrium = by_springs(_linear_equilibrium, _bent_equilibrium)
+"""equilibrium(body, force, v): where springs along x1, and dashpots at this velocity, hold a force."""
 
 
 @inner

@@ -17,9 +17,6 @@ from frictionlab.scene.signals import FULL_TURN, signal_of
 from frictionlab.scene.waveforms import SINE
 
 SHAKING = "drive", "transverse.load", "slip", "transverse_slip", "belt_vibration", "normal_load_variation"
-BENDING = "cubic_stiffness", "amplitude_damping", "curvature"
-REMEMBERING = "relaxation", "fractional"
-"""Keys of ``body`` that make it nonlinear, and that make it remember."""
 SIZES = "unbalance", "velocity_amplitude", "amplitude"
 NOTHING_ELSE = "nothing else shakes the body: without the change of its normal load nothing moves it"
 TURNED = "{}: its part along the belt points backward, and no waveform says so"

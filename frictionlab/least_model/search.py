@@ -12,8 +12,6 @@ from frictionlab.least_model.answers import Change, Curves, change_of_curve
 from frictionlab.least_model.lesser import CannotGo, LesserModel, Taken
 from frictionlab.least_model.motion import cut_to, friction_free_of, orders, slipping
 from frictionlab.least_model.parts import (
-    BENDING,
-    REMEMBERING,
     on_a_line,
     rigid,
     sines,
@@ -25,6 +23,7 @@ from frictionlab.least_model.parts import (
     without_viscosity,
 )
 from frictionlab.mistakes.notes import WrongValues
+from frictionlab.scene.parts import BENDING, REMEMBERING
 
 
 class Thing(NamedTuple):

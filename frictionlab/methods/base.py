@@ -145,6 +145,13 @@ class Method(Record, ABC):
         return []
 
 
+def about_rest(name: str, scene: Scene) -> str | None:
+    """Why a method of this name cannot do a body that is not linear on a belt that vibrates about rest."""
+    rests = scene.belt_speed == 0.0 and scene.belt_vibration is not None
+    told = f"{name} does not know where a body that is not linear may rest on a belt that vibrates about rest"
+    return f"{told}: give a belt speed" if rests and scene.body_terms else None
+
+
 def beyond_linear(name: str, scene: Scene, taken: Sequence[str] = ()) -> str | None:
     """Why a method of this name cannot do the body of a scene, None where it can; taken: keys that it takes."""
     others = [f"body.{term}" for term in scene.body_terms if term not in taken]

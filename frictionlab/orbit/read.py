@@ -16,11 +16,11 @@ from frictionlab.dynamics.motion import (
     SLIP_ROUNDING,
     bare,
     body_at,
+    dissipated,
     instant_at,
     load,
     mean_friction,
     planar,
-    restoring_force,
     slip,
 )
 from frictionlab.orbit.energy_errors import FOR_ERRORS, Means, energy_errors
@@ -295,7 +295,7 @@ def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: floa
         pressed = weight * body.normal_load
         pushed = load(body, now)
         put_in = put_in + weight * _power(pushed, velocity)
-        viscous = viscous + weight * _power(restoring_force(body, 0.0 * velocity, velocity), velocity)
+        viscous = viscous + weight * _power(dissipated(body, x[node], velocity), velocity)
         taken = taken + pressed * _power(rub, velocity)
         contact = contact + pressed * _power(rub, w)
         way = way + weight * velocity

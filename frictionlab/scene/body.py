@@ -5,16 +5,23 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from frictionlab.scene.varying import packed
 
 
 class Bends(NamedTuple):
-    """What a body adds along x1 not linearly: spring_2 x^2 + spring_3 x^3 + (dashpot_1 x + dashpot_2 x^2) x'."""
+    """What a body adds along x1 not linearly: spring_2 x^2 + spring_3 x^3 + (dashpot_1 x + dashpot_2 x^2) x'.
+
+    sine, cosine: of the motion without friction, about, by one harmonic; no reference, but where searches begin.
+    """
 
     spring_2: float
     spring_3: float
     dashpot_1: float
     dashpot_2: float
+    sine: float = 0.0
+    cosine: float = 0.0
 
 
 class Mass(NamedTuple):
@@ -36,6 +43,26 @@ class Mass(NamedTuple):
     bends: Any = ()
 
 
+def one_harmonic_motions(mass: Mass, rub: float = 0.0) -> list[complex]:
+    """Phasors of x1 that balance the load by one harmonic, of a body that bends; rub: a force against velocity."""
+    bends, omega, load = mass.bends, mass.frequency, abs(mass.force)
+    if load == 0.0:
+        return []
+    # an even spring softens by the shift of the mean that it brings
+    cubic = 0.75 * bends.spring_3 - (5.0 / 6.0) * bends.spring_2**2 / mass.stiffness
+    amplitudes = load / max(mass.stiffness, omega**2) * np.geomspace(1e-3, 1e3, 3001)
+    damping = omega * (mass.damping + 0.25 * bends.dashpot_2 * amplitudes**2) + rub / amplitudes
+    dynamic = mass.stiffness + cubic * amplitudes**2 - omega**2 + 1j * damping
+    missing = amplitudes * np.abs(dynamic) - load
+    return [complex(mass.force / dynamic[i]) for i in np.flatnonzero(missing[:-1] * missing[1:] < 0.0)]
+
+
+def with_free_motion(mass: Mass) -> Mass:
+    """The mass whose bends know its motion without friction: that of the least amplitude."""
+    free = next(iter(one_harmonic_motions(mass)), 0j)
+    return mass._replace(bends=mass.bends._replace(sine=free.real, cosine=free.imag))
+
+
 def for_kernels(mass: Mass) -> Mass:
     """The mass with what varies in one table, its numbers x1 + i x2."""
     return mass._replace(varying=packed(mass.varying, True))
@@ -52,6 +79,8 @@ class BodyNumbers(NamedTuple):
 
     ``load`` and ``normal_load`` are the numbers of dynamics/motion.py, where they become functions of time; elsewhere
     ``normal_load``, the mean, only measures accuracies and step sizes.
+
+    bends: empty where springs and dashpots are linear; else there is no reference along x1.
     """
 
     damping_mean: float
@@ -69,6 +98,7 @@ class BodyNumbers(NamedTuple):
     periods: float
     prescribed: bool = False
     varying: Any = ()
+    bends: Any = ()
 
 
 def on_the_line(mass: Mass, periods: float = 1.0) -> BodyNumbers:
@@ -86,6 +116,8 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
     reference, reference_2 = _friction_free(*along), _friction_free(*across)
+    if len(mass.bends) > 0:
+        reference = 0j
     force, force_2 = mass.force, mass.transverse_force
     taken = force if reference != 0 else 0j
     taken_2 = force_2 if reference_2 != 0 else 0j
@@ -105,6 +137,7 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
         periods=periods,
         prescribed=False,
         varying=mass.varying,
+        bends=mass.bends,
     )
 
 
@@ -115,9 +148,30 @@ def _friction_free(damping: float, stiffness: float, frequency: float, force: co
 
 
 def restoring_force(body: BodyNumbers, x: Any, v: Any) -> Any:
-    """Force of springs and dashpots per unit mass, to be subtracted from the acceleration."""
+    """Force of linear springs and dashpots per unit mass, to be subtracted from the acceleration."""
     damping = body.damping_mean * v + body.damping_split * v.conjugate()
     return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
+
+
+def bent_force(body: BodyNumbers, x: Any, v: Any) -> Any:
+    """The same of a body that bends."""
+    bends, x1 = body.bends, x.real
+    spring = (bends.spring_2 + bends.spring_3 * x1) * x1 * x1
+    return restoring_force(body, x, v) + (spring + (bends.dashpot_1 + bends.dashpot_2 * x1) * x1 * v.real)
+
+
+def bent_slopes(body: BodyNumbers, x: Any, v: Any) -> BodyNumbers:
+    """The body with the linear springs and dashpots that it has beside this motion."""
+    bends, x1 = body.bends, x.real
+    spring = (2.0 * bends.spring_2 + 3.0 * bends.spring_3 * x1) * x1
+    spring = 0.5 * (spring + (bends.dashpot_1 + 2.0 * bends.dashpot_2 * x1) * v.real)
+    dashpot = 0.5 * (bends.dashpot_1 + bends.dashpot_2 * x1) * x1
+    return BodyNumbers(
+        body.damping_mean + dashpot, body.damping_split + dashpot, body.stiffness_mean + spring,
+        body.stiffness_split + spring, body.normal_load, body.frequency, body.load_sine, body.load_cosine,
+        body.balanced_sine, body.balanced_cosine, body.reference_sine, body.reference_cosine, body.periods,
+        body.prescribed, body.varying, (),
+    )  # fmt: skip
 
 
 def span(body: BodyNumbers) -> float:

@@ -174,6 +174,11 @@ class Fractional(ScenePart):
     order: Order
 
 
+BENDING = "cubic_stiffness", "amplitude_damping", "curvature"
+REMEMBERING = "relaxation", "fractional"
+"""Keys of ``body`` that make it nonlinear, and that make it remember."""
+
+
 class Body(ScenePart):
     """What of the body is no linear spring or dashpot; it acts along x1, beside spring 1 and damping_ratio.
 

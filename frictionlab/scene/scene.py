@@ -18,7 +18,7 @@ from typing import Any, cast
 from pydantic import ValidationError, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, given_values
-from frictionlab.scene.body import Mass, Motion
+from frictionlab.scene.body import Mass, Motion, with_free_motion
 from frictionlab.scene.changed import changed, with_values
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
@@ -223,7 +223,7 @@ class Scene(ScenePart):
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
         omega_r, shaking = across.natural_frequency, self._shaking
         along, aside = shaking.load
-        return Mass(
+        mass = Mass(
             damping=2.0 * self.damping_ratio,
             stiffness=1.0,
             transverse_damping=2.0 * across.damping_ratio * omega_r,
@@ -235,6 +235,7 @@ class Scene(ScenePart):
             varying=shaking.varying,
             bends=self.body.bends(self.damping_ratio) if self.body is not None else (),
         )
+        return with_free_motion(mass) if mass.bends else mass
 
     def motion(self) -> Motion:
         """The numbers of a prescribed slip."""

@@ -23,12 +23,15 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
     The maximum over time of x1' minus the belt's vibration along x1, of the linear response to the loads and, where
     the normal load varies, to the alternating part of the friction of steady sliding, which asks for the law; for a
     prescribed slip that of its oscillation. On a belt that runs backward: of the opposite velocity. For one sine the
-    velocity amplitude. Infinite at undamped resonance. At belt speeds above it a body of one degree of freedom under
-    constant sliding friction never reverses its slip; the curve of the mean has its kink there.
+    velocity amplitude. Infinite at undamped resonance, NaN of a body that is not linear. At belt speeds above it a
+    body of one degree of freedom under constant sliding friction never reverses its slip; the curve of the mean has
+    its kink there.
 
     Raises ValueError for a normal load that varies without a law.
     Source: Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """
+    if scene.body_terms:
+        return math.nan
     if not scene.is_harmonic:
         return _largest_slip(scene, _coefficient(scene, law))
     if scene.degrees_of_freedom == 0:
@@ -40,9 +43,14 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
 
 
 def velocity_scale(scene: Scene) -> float:
-    """V_lin as if the normal load did not vary: a scale of velocities that asks for no law [omega_1 L]."""
+    """V_lin as if the normal load did not vary: a scale of velocities that asks for no law [omega_1 L].
+
+    Of a body that is not linear that of one harmonic, or of its linear springs and dashpots where loads are no sine.
+    """
+    if scene.is_harmonic and scene.body_terms and (bends := scene.mass().bends):
+        return scene.frequency * math.hypot(bends.sine, bends.cosine)
     if scene.is_harmonic:
-        return friction_free_velocity(scene)
+        return friction_free_velocity(scene.model_copy(update={"body": None}))
     return _largest_slip(scene, 0.0)
 
 

@@ -14,6 +14,8 @@ damping.
 
 Where no dashpot damps and friction never falls, E still never grows, so that the map of a period moves no two states
 apart, and the states it leaves as they are form a convex set: one of them that attracts its neighbours is alone.
+
+None of this holds for springs and dashpots that are not linear: a Duffing oscillator has several periodic motions.
 """
 
 from __future__ import annotations
@@ -49,11 +51,16 @@ def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
     under the further conditions of ``is_unique``. Without a load across the belt the motion across decays under every
     isotropic law, and only the damping along the belt matters. The theorem does not cover laws with memory.
     """
-    return law.memory_kind == "none" and (law.monotone() or falls_slowly(scene, law))
+    return law.memory_kind == "none" and not scene.body_terms and (law.monotone() or falls_slowly(scene, law))
 
 
 def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether damping outweighs the steepest fall of steady sliding friction under the largest normal load."""
+    """Whether damping outweighs the steepest fall of steady sliding friction under the largest normal load.
+
+    Never on a body that is not linear, whose motions may part whatever the friction.
+    """
+    if scene.body_terms:
+        return False
     fall = law.steepest_fall()
     return fall == 0.0 or largest_normal_load(scene) * fall < _damping(scene)
 

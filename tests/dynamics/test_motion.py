@@ -92,9 +92,9 @@ def test_the_springs_are_asked_by_few_beside_the_equation_of_motion():
         "methods/periodic/maps/polar.py",
         "methods/periodic/maps/polar_step.py",
     }  # implicit steps, their tangent
-    power = {"orbit/read.py"}  # of the dashpots
+    rest = {"methods/shooting/undriven_path.py"}  # what friction holds in the end
     slope = {"methods/periodic/maps/linearization.py"}  # of the acceleration in time
-    assert uses_of(MECHANICS[:1]) <= ADDRESSES | implicit | momentum | polar | power | slope
+    assert uses_of(MECHANICS[:1]) <= ADDRESSES | implicit | momentum | polar | rest | slope
 
 
 # --- the functions of one group agree -----------------------------------------------------------------------------
@@ -111,6 +111,7 @@ masses = st.builds(
     force=amplitudes,
     transverse_force=amplitudes,
     varying=st.just(()),
+    bends=st.just(()),
 )
 times, speeds = st.floats(0.5, 9.0), st.floats(-3.0, 3.0)
 STEP = 1e-4

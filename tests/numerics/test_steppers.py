@@ -17,7 +17,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.dynamics import smoothing
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.methods.march.adapters import Moreau, Rk4, Smoothed, _restoring_force
+from frictionlab.methods.march.adapters import Moreau, Rk4, Smoothed, _expanded_force, _slopes_at
 from frictionlab.methods.march.lap import NOTHING, MarchSettings
 from frictionlab.methods.march.laps import TIRED, MarchState, march_laps
 from frictionlab.numerics.steppers.moreau import moreau_step
@@ -149,7 +149,7 @@ class Problem(NamedTuple):
 @inner
 def one_step(law, body, grid, stepper, start, h):
     """One step, for tests."""
-    return moreau_step(_restoring_force, Problem(law, body, grid, stepper), start, h)
+    return moreau_step(_expanded_force, _slopes_at, Problem(law, body, grid, stepper), start, h)
 
 
 def step(body, belt_speed, load, theta, x, v, h, law=LAW):

@@ -17,6 +17,7 @@ from scipy.special import ellipe, ellipk
 import frictionlab as fl
 from frictionlab import theory
 from frictionlab.laws.elasto_plastic import breakaway_share
+from frictionlab.scene.body import bent_force, on_the_line
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.theory.sliding_stability import SteadySliding
 
@@ -183,8 +184,21 @@ def energy(integrand: Callable[[Any], Any]) -> float:
     return float(np.mean(integrand(orbit()))) * 2.0 * pi / omega
 
 
+def held_by_bends(x: float, rate: float) -> float:
+    """The force of dashpot and spring along the belt by the text of the page."""
+    r, k_3, c_3 = 0.2, -0.3, 0.4
+    strained = (1 + 2 * r * x) ** 2 * 2 * beta * rate + (1 + r * x) * (1 + 2 * r * x) * x
+    return strained + k_3 * x**3 + c_3 * x**2 * rate
+
+
+def held_by_code(x: float, rate: float) -> float:
+    body = fl.Body(curvature=0.2, cubic_stiffness=-0.3, amplitude_damping=0.4)
+    return float(bent_force(on_the_line(scene.with_(body=body).mass()), x, rate))
+
+
 MODEL = [
     Formula("motion", lambda: (0.0, acceleration_less_forces()), 2e-3),
+    Formula("motion-bent", lambda: (held_by_bends(0.7, -1.1), held_by_code(0.7, -1.1))),
     Formula("slip", lambda: ((orbit()["v1"] - v_b).to_numpy(), orbit()["slip"].to_numpy())),
     Formula(
         "load",

@@ -9,7 +9,15 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import embedded, fast, inner
-from frictionlab.compile.dispatch import as_argument, by_contact, by_law, by_stepper, by_variation, length
+from frictionlab.compile.dispatch import (
+    as_argument,
+    by_contact,
+    by_law,
+    by_springs,
+    by_stepper,
+    by_variation,
+    length,
+)
 from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics import smoothing
 from frictionlab.dynamics.contact import (
@@ -27,10 +35,12 @@ from frictionlab.dynamics.motion import (
     acceleration_under,
     belt_swing,
     instant_at,
+    linear_force,
     load_share,
     normal_load,
     restoring_force,
     slip,
+    slopes_at,
 )
 from frictionlab.dynamics.step_size import growth_of
 from frictionlab.methods.periodic.maps.memory_state import pulled
@@ -255,12 +265,33 @@ def _advance_over_half(problem: MarchProblem, k: int, part: int, h: float, w: An
     return bristle_advance(problem.body, problem.law, h, w, z, pressed)
 
 
-_restoring_force, _acceleration_under = as_argument(restoring_force), as_argument(acceleration_under)
+_ahead = by_springs(
+    lambda body, x, v, ahead, later: linear_force(body, ahead, later),
+    lambda body, x, v, ahead, later: (
+        restoring_force(body, x, v) + linear_force(slopes_at(body, x, v), ahead - x, later - v)
+    ),
+)
+
+
+@as_argument
+@fast
+def _expanded_force(body: BodyNumbers, x: Any, v: Any, ahead: Any, later: Any) -> Any:
+    """The restoring force on another motion, linear about x, v."""
+    return _ahead(body, x, v, ahead, later)
+
+
+@as_argument
+@fast
+def _slopes_at(body: BodyNumbers, x: Any, v: Any) -> Any:
+    return slopes_at(body, x, v)
+
+
+_acceleration_under = as_argument(acceleration_under)
 _smooth_step = dop853.stepper(_smooth_rates)
 
 
 def _by_moreau(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
-    return moreau_step(_restoring_force, problem, start, h)
+    return moreau_step(_expanded_force, _slopes_at, problem, start, h)
 
 
 def _by_rk4(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:

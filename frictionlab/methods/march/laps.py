@@ -16,9 +16,11 @@ from frictionlab.dynamics.motion import (
     in_piece,
     instant_at,
     load,
+    look_ahead,
     normal_load,
     piece_ends,
     pieces_of,
+    runs_away,
 )
 from frictionlab.dynamics.step_size import squared
 from frictionlab.methods.march.adapters import MarchProblem
@@ -213,7 +215,7 @@ def verdict_on_lap(body: BodyNumbers, settings: MarchSettings, lap: Lap) -> int:
     """The verdict where the last lap alone decides; LATE where it went well."""
     if lap.trace.met > settings.fastest:
         return TOO_FAST
-    if not squared(body, lap.x, lap.v) < 1e300:
+    if not squared(body, lap.x, lap.v) < 1e300 or runs_away(body, lap.x):
         return LOST
     if lap.returned:
         return LATE
@@ -256,7 +258,7 @@ def path_stuck(law: Any, body: BodyNumbers, settings: MarchSettings, lap: Lap) -
         return 0.0
     carried = belt_advance(body, settings.belt_speed)
     carries = abs(carried)
-    if carries == 0.0:
+    if carries == 0.0 or look_ahead(body) < 1e300:
         return 0.0
     drift = carries * (body.stiffness_mean + body.stiffness_split) / body.normal_load
     # Not beyond release: one lap less than what friction can hold allows.

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import beyond_linear
+from frictionlab.methods.base import about_rest, beyond_linear
 from frictionlab.methods.march.error import FEWEST_LAPS, WORK
 from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, steppers_of
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.scene.parts import BENDING
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 
@@ -45,7 +46,7 @@ class Request:
 def reasons_against(asked: Request) -> Iterator[str]:
     """Every reason why march cannot do what is asked, the first to be mended first."""
     law, scene = asked.law, asked.scene
-    if reason := beyond_linear("march", scene):
+    if reason := beyond_linear("march", scene, BENDING) or about_rest("march", scene):
         yield reason
         return
     if not steppers_of(asked.kind):

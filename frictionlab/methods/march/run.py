@@ -131,7 +131,7 @@ class MarchRun:
     @property
     def follows_the_drive(self) -> bool:
         """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
-        if self.law.memory_kind != "none":
+        if self.law.memory_kind != "none" or self.scene.body_terms:
             return False
         mass = self.mass
         damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import belt_swing, span
+from frictionlab.dynamics.motion import belt_swing, equilibrium, free_cosine, free_sine, span
 from frictionlab.numerics.linalg import invert
 from frictionlab.numerics.vectors import dimension
 from frictionlab.scene.body import BodyNumbers
@@ -17,9 +17,7 @@ from frictionlab.scene.body import BodyNumbers
 @inner
 def first_guess(law: Any, body: BodyNumbers, belt_speed: float, z: Any) -> float:
     """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
-    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
-        body
-    )
+    swing = body.frequency * math.hypot(abs(free_sine(body)), abs(free_cosine(body))) + belt_swing(body)
     # As if slip were the belt speed and one harmonic of the free motion: the closed form of prescribed slip.
     ratio = abs(belt_speed) / (swing + 1e-300)
     mean = law.sliding_friction(swing + abs(belt_speed)) * (
@@ -28,7 +26,9 @@ def first_guess(law: Any, body: BodyNumbers, belt_speed: float, z: Any) -> float
     for i in range(z.size):
         z[i] = 0.0
     stiffness = body.stiffness_mean + body.stiffness_split
-    z[0] = math.copysign(body.normal_load * mean / math.sqrt(stiffness), belt_speed)
+    away = (free_cosine(body) - body.reference_cosine).real  # from the reference
+    away = equilibrium(body, math.copysign(body.normal_load * mean, belt_speed), 0.0) + away
+    z[0], z[1] = math.sqrt(stiffness) * away, body.frequency * (free_sine(body) - body.reference_sine).real
     # Friction taken as a dashpot: the force over the slip speed, with a floor that keeps it from blowing up at rest.
     return body.normal_load * law.sliding_friction(swing) / (swing + abs(belt_speed) + 1e-3)
 

@@ -12,7 +12,7 @@ import numpy as np
 from frictionlab.compile.call import Held, KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.compile.law_lanes import takes_lanes
-from frictionlab.dynamics.motion import swing_of
+from frictionlab.dynamics.motion import runs_away, swing_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
     Follow,
@@ -116,7 +116,8 @@ class PeriodicProblem:
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
         self.maps = Held(maps_of, law, self.body)
-        constant = scene.is_harmonic and not isinstance(self.like, complex) and slides_saturated(law)
+        linear = scene.is_harmonic and not self.body.bends
+        constant = linear and not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
         self.kind = map_kind(law, isinstance(self.like, complex))
@@ -256,6 +257,11 @@ class PeriodicProblem:
         pairs = [interpreted(unpack)(self.body, state, self.like) for state in states]
         x = np.array([complex(y).real for y, _ in pairs]) + cosine.real
         return x, np.array([complex(u).real for _, u in pairs]) + self.body.frequency * sine.real
+
+    def runs_away(self, state: Floats) -> bool:
+        """Whether a mass in this state never comes back."""
+        x, _velocity = interpreted(unpack)(self.body, state, self.like)
+        return bool(interpreted(runs_away)(self.body, x))
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
         """Position and velocity of a start; on the friction-free orbit, with memory, shifted as in sliding on."""

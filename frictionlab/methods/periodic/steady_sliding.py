@@ -15,7 +15,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
-from frictionlab.dynamics.motion import swing_of
+from frictionlab.dynamics.motion import equilibrium, free_cosine, free_sine, swing_of
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.memory_state import measure_scales, unpack_memory
 from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
@@ -32,8 +32,8 @@ GRAZING = 1e-5
 @inner
 def state_of_sliding(body: BodyNumbers, friction: float, like: Any) -> Any:
     """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
-    shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
-    return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
+    shift = equilibrium(body, body.normal_load * friction, 0.0)
+    return free_cosine(body) + shift + 0.0 * like, body.frequency * free_sine(body), 0.0 * like
 
 
 memory_of_sliding = by_law(

@@ -24,6 +24,7 @@ from frictionlab.methods.periodic.problem import (
 )
 from frictionlab.methods.shooting.long_mean import LongMean
 from frictionlab.quantities import Floats
+from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import friction_at_rest
@@ -55,7 +56,8 @@ class Attractor:
     low, high: the smallest and the largest mean over one drive period. followed: for how many periods. points: states
     at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size]. average: over a
     long time, of all motions on one attractor that never repeat; None where nothing has asked for it. neutral: a
-    motion that repeats, as others beside it do, for it has no damping. stopped: after too many steps.
+    motion that repeats, as others beside it do, for it has no damping. stopped: after too many steps. lost: it runs
+    away, stopped for that.
     """
 
     followed: int
@@ -67,6 +69,7 @@ class Attractor:
     average: LongMean | None = None
     neutral: bool = False
     stopped: bool = False
+    lost: bool = False
 
     def agrees(self, other: Attractor) -> bool:
         """Whether both have the same mean friction, for the same reason."""
@@ -167,7 +170,15 @@ def starts(scene: Scene, law: FrictionLaw) -> list[Initial | None]:
     flung = Initial(x=last - side * 2.0 * way, velocity=-side * (abs(belt) + way))
     ahead = Initial(x=side * (limit + force_swing(scene)))
     resting = Initial(x=last, velocity=belt)
-    return [*given, shaken, resting, *moving_across(scene, law, [flung, ahead])]
+    return [*given, shaken, resting, *moving_across(scene, law, [flung, ahead]), *_bent_starts(scene, limit)]
+
+
+def _bent_starts(scene: Scene, limit: float) -> list[Initial]:
+    """Of a body that is not linear, motions that one harmonic balances: without friction, and with the most of it."""
+    mass = scene.mass()
+    rubs = (0.0, 4.0 / math.pi * limit) if mass.bends else ()
+    motions = [each for rub in rubs for each in one_harmonic_motions(mass, rub)]
+    return [Initial(x=each.imag, velocity=mass.frequency * each.real) for each in motions]
 
 
 def moving_across(scene: Scene, law: FrictionLaw, along: Sequence[Initial]) -> list[Initial]:
@@ -265,10 +276,10 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
     first, more = all_starts(problem, scene)
     for start in first:
         # motions of too many steps have no mean; a second one is followed for what else there is
-        if sum(one.stopped for one in followed.reached) < 2:
+        if followed.slow < 2:
             followed.follow(start)
     for start in more:
-        if not followed.one_state_so_far() or sum(one.stopped for one in followed.reached) > 1:
+        if not followed.one_state_so_far() or followed.slow > 1:
             break
         followed.follow(start)
     wild = any(one.curve is None and not one.stopped for one in followed.ended)
@@ -305,6 +316,11 @@ class FollowedStarts:
     def ended(self) -> list[Attractor]:
         """Where those led that were not stopped on their way; all, where every one was."""
         return [one for one in self.reached if not one.stopped] or self.reached
+
+    @property
+    def slow(self) -> int:
+        """How many were stopped after too many steps."""
+        return sum(one.stopped and not one.lost for one in self.reached)
 
     def one_state_so_far(self) -> bool:
         """Whether all that were not stopped ended on one closed orbit, or may yet: few, and some do not repeat."""
@@ -413,14 +429,18 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
             return Attractor(len(way.means), 0, *ends, None, points, neutral=True), seconds
     last = way.means[len(way.means) // 2 :]
     low, high = float(last.min()), float(last.max())
-    stopped = way.period == 0 and len(way.means) < FEWEST
-    return Attractor(len(way.means), 0, low, high, None, way.states[-POINTS_KEPT:], stopped=stopped), seconds
+    stopped, points = way.period == 0 and len(way.means) < FEWEST, way.states[-POINTS_KEPT:]
+    lost = stopped and problem.runs_away(way.state)
+    return Attractor(len(way.means), 0, low, high, None, points, stopped=stopped, lost=lost), seconds
 
 
 def undamped(scene: Scene) -> bool:
     """Whether a free oscillation, along the belt or across it, has no dashpot."""
     mass = scene.mass()
-    return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
+    damps = mass.damping > 0.0 or (
+        mass.bends and (mass.bends.dashpot_1 != 0.0 or mass.bends.dashpot_2 != 0.0)
+    )
+    return not damps or (scene.transverse is not None and mass.transverse_damping == 0.0)
 
 
 def ends_on(state: Floats, period: int, orbit: Attractor) -> bool:
@@ -494,7 +514,9 @@ def _repeats(one: Destination, other: Destination) -> bool:
 
 def left_unfinished(reached: Sequence[Attractor]) -> str:
     """A sentence on the starts that were stopped, '' where none was."""
-    stopped = [one.followed for one in reached if one.stopped]
+    stopped, lost = [one.followed for one in reached if one.stopped], sum(one.lost for one in reached)
+    if lost:
+        return f"{lost} of {len(reached)} starts run away: far out the spring along the belt pushes outward"
     told = f"{len(stopped)} of {len(reached)} starts were followed for {max(stopped, default=0)} drive periods only"
     return (
         f"{told}: that took hundreds of thousands of steps, for friction near rest is steep"

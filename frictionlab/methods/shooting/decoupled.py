@@ -131,7 +131,10 @@ def _turned(scene: Scene) -> OneAxis:
         drive=Drive(amplitude=size, phase=math.degrees(phase), frequency=mass.frequency),
         initial=start,
         own=mass._replace(
-            damping=mass.transverse_damping, stiffness=mass.transverse_stiffness, force=mass.transverse_force
+            damping=mass.transverse_damping,
+            stiffness=mass.transverse_stiffness,
+            force=mass.transverse_force,
+            bends=(),
         ),
     )
 

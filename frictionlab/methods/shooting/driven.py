@@ -388,6 +388,9 @@ class SteadyStates:
         reached, unfinished = followed.ended, left_unfinished(followed.reached)
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
+        if scene.initial is not None and followed.reached[0].lost:
+            self.reason[i] = f"from scene.initial the motion runs away; {unfinished}"
+            return
         if not unique and scene.initial is None and (shared := self._shared(reached)) is not None:
             found, spread = shared
             self._accept(i, found)
@@ -401,6 +404,7 @@ class SteadyStates:
             self._accept(i, first)
             if unfinished:
                 self._add(i, unfinished)
+                self.unique[i] = NOT_UNIQUE if any(one.lost for one in followed.reached) else ""
             elif unique:
                 self.tried[i] = followed.trial
             if not unique:
@@ -424,6 +428,7 @@ class SteadyStates:
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
         )
         why = lags if problem.falls_slowly else "friction falls with speed"
+        why = "springs and dashpots are not linear" if scene.body_terms else why
         self._leave_open(i, f"{why}: {describe(reached)}", low, high)
         self.window[i] = max(one.averaged_over for one in reached) * problem.common
 

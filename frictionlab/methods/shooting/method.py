@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, FoundState, Method, beyond_linear
+from frictionlab.methods.base import Answers, FoundState, Method, about_rest, beyond_linear
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
@@ -16,6 +16,7 @@ from frictionlab.methods.shooting.followed_states import follow_motion, follow_s
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
 from frictionlab.orbit.record import Orbit
+from frictionlab.scene.parts import BENDING
 from frictionlab.scene.scene import Scene
 
 Applies = Callable[[Scene, FrictionLaw], bool]
@@ -70,7 +71,7 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
-        if reason := beyond_linear(self.name, scene):
+        if reason := beyond_linear(self.name, scene, BENDING) or about_rest(self.name, scene):
             return reason
         if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"

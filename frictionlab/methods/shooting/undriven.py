@@ -161,7 +161,8 @@ class Undriven:
     @property
     def _conserves(self) -> bool:
         """Whether only friction other than that of sliding takes energy."""
-        return self._path.mass.damping == 0.0 and self.law.constant_sliding_friction()
+        mass = self._path.mass
+        return mass.damping == 0.0 and not mass.bends and self.law.constant_sliding_friction()
 
     @property
     def _forgets(self) -> bool:
@@ -234,7 +235,8 @@ class Undriven:
     def _loses_energy(self, state: Floats) -> bool:
         """Whether every motion with no more energy than this one loses it, down to steady sliding."""
         path = self._path
-        return self._forgets and loses_energy(path.mass, self.law, path.speed, path.from_sliding(state))
+        linear = self._forgets and not path.mass.bends
+        return linear and loses_energy(path.mass, self.law, path.speed, path.from_sliding(state))
 
     def _slides_freely(self, track: Track) -> bool:
         """Whether friction is that of sliding, to little."""
@@ -374,17 +376,18 @@ class Undriven:
 
     def _at_rest(self) -> PeriodicMotion:
         """On a belt at rest: the spring keeps what friction holds when the motion has died out."""
-        start, mass = self.scene.start, self._path.mass
+        start, path = self.scene.start, self._path
         if start.x == start.velocity == 0.0:
-            return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, ModelWord.AT_REST)
-        unit, accuracy = math.sqrt(mass.stiffness) / mass.normal_load, self._accuracy
+            return PeriodicMotion(path.start, math.nan, 0.0, ROUNDING, math.nan, ModelWord.AT_REST)
+        accuracy = self._accuracy
         state, left = self._rested(accuracy)
         while True:
             # where it ends depends on every step of the way: once more, much finer
             before, accuracy = state, max(accuracy / FINER, LEAST)
             state, left = self._rested(accuracy)
-            mean = float(unit * state[0])
-            error = interpreted(stated_error)(unit * float(abs(state[0] - before[0])), 0.5 * unit * left, 0.0)
+            mean, unit = path.held(state)
+            changed = abs(mean - path.held(before)[0])
+            error = interpreted(stated_error)(changed, 0.5 * unit * left, 0.0)
             if error <= self.tolerance or accuracy <= LEAST:
                 return PeriodicMotion(state, math.nan, mean, error, math.nan, ModelWord.AT_REST)
 

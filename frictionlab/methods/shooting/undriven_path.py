@@ -13,7 +13,14 @@ import numpy as np
 from frictionlab.compile.call import Held, KernelCall
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.interpret import interpreted
-from frictionlab.dynamics.motion import START, belt_velocity
+from frictionlab.dynamics.motion import (
+    START,
+    belt_velocity,
+    equilibrium,
+    restoring_force,
+    runs_away,
+    slopes_at,
+)
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.methods.periodic.period_map import size_of, start_of
@@ -162,7 +169,7 @@ class UndrivenPath:
     @cached_property
     def sliding(self) -> Floats:
         """Steady sliding."""
-        x = self.mass.normal_load * self.sliding_friction / self.mass.stiffness
+        x = interpreted(equilibrium)(self._body, self.mass.normal_load * self.sliding_friction, 0.0)
         bristle = self.law.memory_kind == "bristle"
         return self._state(x, 0.0, steady_deflection(self.law, -self.speed) if bristle else -self.speed)
 
@@ -170,7 +177,15 @@ class UndrivenPath:
     def release(self) -> Floats:
         """Where rest ends, and slip begins."""
         limit = math.copysign(self.mass.normal_load * friction_at_rest(self.law), self.speed)
-        return self._state((limit - self.mass.damping * self.speed) / self.mass.stiffness, self.speed, 0.0)
+        return self._state(interpreted(equilibrium)(self._body, limit, self.speed), self.speed, 0.0)
+
+    def held(self, state: Floats) -> tuple[float, float]:
+        """The mean friction of a mass that rests in a state, and by how much it changes with that position."""
+        scale, body = math.sqrt(self.mass.stiffness), self._body
+        x, unit = float(state[0]) / scale, 1.0 / self.mass.normal_load
+        slope = interpreted(slopes_at)(body, x, 0.0)
+        rise = float(slope.stiffness_mean + slope.stiffness_split) / scale
+        return unit * float(interpreted(restoring_force)(body, x, 0.0)), unit * abs(rise)
 
     def from_sliding(self, state: Floats) -> float:
         """Distance to steady sliding."""
@@ -186,6 +201,8 @@ class UndrivenPath:
         span, seconds = KernelCall(follow_undriven).timed(*arguments)
         self.effort.seconds += seconds
         self.effort.work += span.steps
+        if span.steps < 0 and interpreted(runs_away)(self._body, float(span.end[0])):
+            raise NotFound(f"the motion runs away: {self.whereabouts(state)}")
         if span.steps < 0 or not np.isfinite(span.end).all():
             raise NotFound(
                 f"friction is too steep near rest for {MOST_STEPS:,} steps: {self.whereabouts(state)}"

@@ -123,10 +123,14 @@ def project_impulse(contact: ContactStep, theta: float, before: Any, q: Any) -> 
 
 
 @inner
-def moreau_step(restoring_force: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
-    """One step over h; restoring_force(body, x, v) is linear, and acts along each axis for itself."""
-    body, theta, x, v = problem.body, problem.stepper.theta, start.x, start.v
-    late, left = theta * h, 1.0 - theta
+def moreau_step(expanded: Any, slopes_at: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
+    """One step over h.
+
+    slopes_at(body, x, v) is the linear body beside this motion, whose springs and dashpots act along each axis for
+    itself, expanded(body, x, v, ahead, later) its force on another position and velocity.
+    """
+    theta, x, v = problem.stepper.theta, start.x, start.v
+    late, left, body = theta * h, 1.0 - theta, slopes_at(problem.body, x, v)
     # The mass that an impulse moves along either axis: springs and dashpots are implicit, and add to it.
     mass_1 = 1.0 + late * (body.damping_mean + body.damping_split)
     mass_1 += late * late * (body.stiffness_mean + body.stiffness_split)
@@ -134,7 +138,8 @@ def moreau_step(restoring_force: Any, problem: Any, start: StepStart, h: float) 
     mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
     # Loads are those of the instant theta into the step: its middle or its end.
     k, part = start.k, int(2.0 * theta)
-    pushed = v + h * (load_at(problem, k, part) - restoring_force(body, x + late * left * v, left * v))
+    held = expanded(problem.body, x, v, x + late * left * v, left * v)
+    pushed = v + h * (load_at(problem, k, part) - held)
     pressed, belt = normal_load_at(problem, k, part), belt_at(problem, k, LAST)
     contact = ContactStep(problem.law, h * pressed, mass_1, mass_2)
     # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.

@@ -41,6 +41,7 @@ from frictionlab.methods.periodic.maps.rates import (
     note_share,
     rate_in_mode,
     slip_held,
+    springs_at,
     stretching,
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, from_columns, keep, multiple
@@ -275,7 +276,7 @@ def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) ->
     jerk = jerk - belt_jerk(body, flow.belt_speed, now)
     work.slope[Y], work.slope[IMPULSE] = -turn, (normal_load_rate(body, now) / body.normal_load) * rub
     load = unbalanced_rate(body, now) - _swell(body, now) * rub
-    work.slope[U] = load + jerk + restoring_force(body, 0.0 * turn, turn)
+    work.slope[U] = load + jerk + restoring_force(springs_at(flow, work), 0.0 * turn, turn)
     for k in range(count_of(flow.law)):
         work.slope[MEMORY + k] = 0.0 * like
 

@@ -25,6 +25,7 @@ from frictionlab.dynamics.motion import (
     piece_ends,
     pieces_of,
     quickest_of,
+    runs_away,
     swing_of,
 )
 from frictionlab.dynamics.step_size import growth_factor, longest_step
@@ -254,7 +255,7 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
         # one step: too inaccurate, it is repeated shorter
         growth = growth_factor(step(flow, node.tau, h, work, like) / accuracy, 5.0)
         steps += 1
-        if steps > MOST_STEPS:
+        if steps > MOST_STEPS or runs_away(body, work.start[Y]):
             return closest, -1
         if growth < 1.0:
             h = h * growth

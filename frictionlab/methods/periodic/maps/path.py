@@ -24,6 +24,7 @@ from frictionlab.dynamics.motion import (
     pieces_of,
     reference_position,
     reference_velocity,
+    runs_away,
     slip_at,
     slip_rate,
 )
@@ -340,7 +341,7 @@ def _path_piece(case: Case, tau: float, end: float, image: Carried, how: Steppin
         h = min(h, ahead, longest, end - tau)
         ending, growth = _attempt(node, h, ahead < 1e300, accuracy)
         tried, h, steps = h, ending.h, steps + 1
-        if steps > MOST_STEPS:
+        if steps > MOST_STEPS or runs_away(body, state.x):
             return Carried(state.x, state.v, z, friction_impulse, closest, -1)
         if ending.verdict == REPEAT:
             continue

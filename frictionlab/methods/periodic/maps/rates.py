@@ -23,11 +23,13 @@ from frictionlab.dynamics.motion import (
     belt_velocity,
     deviation_slip,
     deviation_slip_rate,
+    instant_near,
     load_share,
     normal_load,
     normal_load_bend,
     normal_load_rate,
     reference_velocity,
+    slopes_at,
     unbalanced_load,
 )
 from frictionlab.scene.body import BodyNumbers
@@ -131,6 +133,13 @@ velocity_held = by_scalars(
 
 rate_held = by_scalars(lambda flow, now, a: a, lambda flow, now, a: deviation_slip_rate(flow, now, a))
 """rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
+
+
+@fast
+def springs_at(flow: Flow, work: Work) -> Any:
+    """The linear springs and dashpots that the body has beside ``work.start``."""
+    now = instant_near(flow, flow.anchor)
+    return slopes_at(flow.body, work.start[Y], deviation_held(flow, now, work.start[U]))
 
 
 # --- stick, modes and yield -----------------------------------------------------------------------------------------

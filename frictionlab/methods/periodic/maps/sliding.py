@@ -30,6 +30,7 @@ from frictionlab.dynamics.motion import (
     reference_position,
     reference_velocity,
     resting_friction,
+    runs_away,
     slip_at,
     slip_rate,
 )
@@ -331,7 +332,7 @@ def _sliding_piece(
         closest = min(closest, node.speed)
         done, h, tried = _slide(problem, node, leaving, accuracy, min(h, longest, end - tau), track)
         steps += tried
-        if steps > MOST_STEPS:
+        if steps > MOST_STEPS or runs_away(body, state.x):
             return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, -1)
         if done.verdict != REPEAT:
             resting, leaving = done.verdict == REST, done.verdict == STILL

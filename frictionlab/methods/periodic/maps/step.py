@@ -27,6 +27,7 @@ from frictionlab.methods.periodic.maps.rates import (
     as_memory,
     fill_rates,
     load_on,
+    springs_at,
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
@@ -42,7 +43,7 @@ def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
 
     No pivots: a block that is singular to rounding makes an error that is not finite, and the step is repeated.
     """
-    body, n, diagonally = flow.body, count_of(flow.law), 1.0 / (GAMMA * h)
+    body, n, diagonally, beside = flow.body, count_of(flow.law), 1.0 / (GAMMA * h), springs_at(flow, work)
     # friction by slip: at once, and through every deflection that slip moves within the step
     by_slip = block(work.jacobian, 3 * n, like)
     for k in range(n):
@@ -53,8 +54,8 @@ def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
         keep(work.factors, 2 * k, alone, like)
         keep(work.factors, 2 * k + 1, moved, like)
     # the mass, with its springs at the end of the step: y' = u makes them gamma h K in the block of u
-    mean = diagonally + body.damping_mean + GAMMA * h * body.stiffness_mean
-    mass = diagonal(mean, body.damping_split + GAMMA * h * body.stiffness_split, like)
+    mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean
+    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split, like)
     keep(
         work.factors,
         2 * n,
@@ -108,7 +109,7 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
         alone = alone + apply(block(work.jacobian, 3 * k + 2, like), moved)
     right = (
         work.rates[U]
-        - GAMMA * h * _stretched(body, work.rates[Y])
+        - GAMMA * h * _stretched(springs_at(flow, work), work.rates[Y])
         - load_on(body, instant_near(flow, flow.anchor)) * alone
     )
     u = apply(block(work.factors, 2 * n, like), right)

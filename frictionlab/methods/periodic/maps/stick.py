@@ -16,6 +16,7 @@ from frictionlab.dynamics.motion import (
     holding_force,
     in_piece,
     instant_at,
+    look_ahead,
     normal_load,
     normal_load_bend,
     normal_load_curvature,
@@ -25,6 +26,7 @@ from frictionlab.dynamics.motion import (
     quickest_of,
     resting_friction,
     restoring_force,
+    slopes_at,
     span,
 )
 from frictionlab.methods.periodic.case import Case
@@ -35,11 +37,11 @@ from frictionlab.scene.body import BodyNumbers
 def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: Any, end: float) -> float:
     """First time the held force reaches the limit, or end: what is left stays above a parabola that bounds it."""
     holds = law.static_friction()
-    curvature = holding_curvature(body, belt_speed) + holds * normal_load_curvature(body)
-    start = tau
+    swell, longest, start = holds * normal_load_curvature(body), look_ahead(body), tau
     for _ in range(10_000):
-        now = instant_at(body, tau)
-        held, rate, _bend = holding_force(body, belt_speed, now, x + belt_path(body, belt_speed, start, tau))
+        now, there = instant_at(body, tau), x + belt_path(body, belt_speed, start, tau)
+        held, rate, _bend = holding_force(body, belt_speed, now, there)
+        curvature = holding_curvature(body, belt_speed, there) + swell
         limit, rise = holds * normal_load(body, now), holds * normal_load_rate(body, now)
         size = abs(held)
         gap = limit - size
@@ -53,13 +55,15 @@ def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: An
             slope, bend = abs(rate) - rise, curvature
         root = math.sqrt(slope * slope + 2.0 * bend * gap)
         # The first zero of gap - slope*t - bend*t^2/2, without cancellation.
-        tau = tau + (2.0 * gap / (slope + root) if slope + root > 0.0 else end)
+        tau = tau + min(2.0 * gap / (slope + root) if slope + root > 0.0 else end, longest)
     return min(tau, end)
 
 
 @inner
 def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> float:
     """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
+    if look_ahead(body) < 1e300:  # the force of such springs grows as nobody looks at here
+        return 1.0
     x, way, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
     last = _velocity_at(in_piece(body, pieces - 1), belt_speed, span(body))
     for k in range(pieces):
@@ -93,7 +97,7 @@ def _room_at_rest(law: Any, body: BodyNumbers, belt_speed: float, x: Any, start:
         held, _rate, _bend = holding_force(body, belt_speed, now, x + belt_path(body, belt_speed, start, tau))
         room = min(room, holds * normal_load(body, now) - abs(held))
     # Between two samples the held force may exceed the straight line by so much.
-    curvature = holding_curvature(body, belt_speed) + holds * normal_load_curvature(body)
+    curvature = holding_curvature(body, belt_speed, x) + holds * normal_load_curvature(body)
     return room - 0.125 * curvature * (period / samples) ** 2
 
 
@@ -106,7 +110,13 @@ class Start(NamedTuple):
 
 
 def _start_in_the_plane(
-    case: Case, now: Instant, accuracy: float, rate: complex, bend: complex, held: complex
+    case: Case,
+    now: Instant,
+    accuracy: float,
+    beside: BodyNumbers,
+    rate: complex,
+    bend: complex,
+    held: complex,
 ) -> Start:
     """Slip sets off along the held force; where that is at the limit of slip, it grows with the square of time.
 
@@ -134,10 +144,10 @@ def _start_in_the_plane(
     if not b2 > 0.0:  # the force falls back below the limit at once: what slip there is stays below rounding
         return Start(1e-6 / body.frequency, along * 1e-3 * accuracy, 0.0 * held)
     turn = first.imag / limit
-    second = (0.5 * bend - restoring_force(body, 0.0 * held, b2 * along)) * along.conjugate()
+    second = (0.5 * bend - restoring_force(beside, 0.0 * held, b2 * along)) * along.conjugate()
     b3 = complex((second.real - 0.5 * swell + 0.5 * limit * turn * turn) / 3.0, b2 * turn)
     b4 = complex(0.0, b2 * (second.imag - 3.0 * b3.imag - rise * turn) / limit + b3.real * turn)
-    quick = quickest_of(body) + math.sqrt(body.stiffness_mean + abs(body.stiffness_split))
+    quick = quickest_of(body) + math.sqrt(abs(beside.stiffness_mean) + abs(beside.stiffness_split))
     t = min(0.01 / quick, (0.1 * accuracy / (b2 * quick**2)) ** 0.25)
     while t > 1e-12 and t * abs(limit - pressed * law.sliding_friction(b2 * t * t)) > 0.1 * accuracy:
         t *= 0.5
@@ -147,7 +157,7 @@ def _start_in_the_plane(
 
 _start = by_dimension(
     # nothing is singular on the line: the leg starts from rest
-    lambda case, now, accuracy, rate, bend, held: Start(0.0, 0.0, 0.0),
+    lambda case, now, accuracy, beside, rate, bend, held: Start(0.0, 0.0, 0.0),
     _start_in_the_plane,
 )
 
@@ -194,9 +204,10 @@ def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> 
     now = instant_at(body, tau)
     held, rate, bend = holding_force(body, belt_speed, now, x)
     side = 1.0 if held.real > 0.0 else -1.0
-    t, w, path = _start(case, now, accuracy, rate, bend, held)
+    beside = slopes_at(body, x, belt_velocity(body, belt_speed, now) + 0.0 * x)
+    t, w, path = _start(case, now, accuracy, beside, rate, bend, held)
     # The balance of momentum over the start: what neither spring nor slip has taken of the impulse, friction has.
     pulled = resting_friction(body, belt_speed, tau, tau + t, x)
-    pulled = pulled - (restoring_force(body, 0.0 * x, path) + w) / body.normal_load
+    pulled = pulled - (restoring_force(beside, 0.0 * x, path) + w) / body.normal_load
     x = x + belt_path(body, belt_speed, tau, tau + t) + path
     return StickPhase(tau + t, x, w, side, friction_impulse + pulled, stuck, pulled)

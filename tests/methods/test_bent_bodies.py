@@ -1,0 +1,211 @@
+"""Bodies whose spring and dashpot are not linear: limits, symmetries, balances, integrations of the tests' own."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from outside_state import steady
+from scipy.integrate import solve_ivp
+
+import frictionlab as fl
+from frictionlab import registry
+
+LINE: dict[str, Any] = {
+    "damping_ratio": 0.1,
+    "normal_load": 10,
+    "belt_speed": 5,
+    "drive": {"unbalance": 10, "frequency": 1},
+}
+BENT = {"cubic_stiffness": 0.01, "amplitude_damping": 0.02, "curvature": 0.01}
+COULOMB, DAHL = {"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 40}
+LUGRE = {"kind": "lugre", "mu_kinetic": 0.3, "mu_static": 0.35, "stiffness": 40, "damping": 0.1}
+SHAKEN: dict[str, Any] = {
+    "drive": {"amplitude": 6, "frequency": 1.3, "waveform": "square"},
+    "belt_vibration": {"velocity_amplitude": 2, "phase": 40, "waveform": "triangle"},
+    "normal_load_variation": {"amplitude": 0.5, "phase": 90},
+}
+PLANE = {
+    "transverse": {"natural_frequency": 1.5, "damping_ratio": 0.1, "load": {"amplitude": 4, "phase": 90}}
+}
+
+
+def answered(scene: dict[str, Any], law: dict[str, Any] = COULOMB, **given: Any) -> fl.SteadyState:
+    made = registry.law_class(law["kind"])(**{name: law[name] for name in law if name != "kind"})
+    return fl.steady_state(fl.Scene(**scene), made, **given)
+
+
+@pytest.mark.parametrize("law", [COULOMB, DAHL])
+def test_a_body_that_hardly_bends_is_the_linear_one(law: dict[str, Any]) -> None:
+    linear = answered(LINE, law, method="shooting", tolerance=1e-12)
+    small = {name: 1e-13 * value for name, value in BENT.items()}
+    bent = answered(LINE | {"body": small}, law, tolerance=1e-12)
+
+    assert bent.status == "ok"
+    assert abs(bent.mean_friction - linear.mean_friction) <= 1e-12 + bent.error + linear.error
+
+
+@pytest.mark.parametrize("body", [{"cubic_stiffness": 0.01}, {"curvature": 0.004}, BENT])
+def test_the_mirrored_body_has_the_opposite_mean(body: dict[str, float]) -> None:
+    mirrored = body | {"curvature": -body.get("curvature", 0.0)}
+    drive = LINE["drive"] | {"phase": 180}
+    one, other = (
+        answered(LINE | {"body": body}),
+        answered(LINE | {"body": mirrored, "belt_speed": -5, "drive": drive}),
+    )
+
+    assert one.mean_friction == pytest.approx(-other.mean_friction, abs=one.error + other.error)
+
+
+def test_the_work_of_the_loads_is_what_dashpots_and_friction_take() -> None:
+    state = answered(LINE | {"body": BENT})
+
+    assert state.energy_input == pytest.approx(state.energy_viscous + state.energy_friction, rel=1e-9)
+    alone = answered(LINE | {"body": BENT | {"amplitude_damping": 0.0}})
+    assert abs(alone.energy_viscous / state.energy_viscous - 1.0) > 0.01
+
+
+@pytest.mark.parametrize(
+    ("scene", "law"),
+    [
+        (LINE | {"body": BENT}, COULOMB),
+        (LINE | {"body": BENT}, DAHL),
+        (LINE | {"body": BENT, "belt_speed": 0.5}, COULOMB),
+        (LINE | {"body": BENT, "belt_speed": 2} | SHAKEN, COULOMB),
+        (LINE | {"body": {"curvature": 0.02}}, COULOMB),
+        (LINE | PLANE | {"body": BENT, "belt_speed": 2}, LUGRE),
+    ],
+)
+def test_means_and_energies_are_those_of_another_integration(
+    scene: dict[str, Any], law: dict[str, Any]
+) -> None:
+    state, truth = answered(scene, law, tolerance=1e-9), steady(scene, law)
+
+    assert state.status == "ok", state.reason
+    assert state.unique == "tested"
+    assert abs(state.mean_friction - truth.mean) <= state.error + truth.error
+    assert state.period == truth.drive_periods
+    for name in ("energy_input", "energy_viscous", "energy_friction", "energy_contact"):
+        assert getattr(state, name) == pytest.approx(getattr(truth, name), rel=1e-6), name
+
+
+def test_next_to_no_friction_leaves_the_oscillator_of_duffing() -> None:
+    force, omega, damping, cubic = 0.8, 1.3, 0.2, 0.5
+
+    def rates(tau: float, state: Any) -> list[float]:
+        x, v = state
+        return [v, force * math.sin(omega * tau) - damping * v - x - cubic * x**3]
+
+    period = 2.0 * math.pi / omega
+    ends = solve_ivp(rates, (0.0, 60.0 * period), [0.0, 0.0], method="DOP853", rtol=1e-12, atol=1e-12).y[
+        :, -1
+    ]
+    last = solve_ivp(
+        rates, (0.0, period), ends, "DOP853", np.linspace(0.0, period, 20001), rtol=1e-12, atol=1e-12
+    )
+    scene = {
+        "damping_ratio": 0.5 * damping,
+        "normal_load": 1e-9,
+        "belt_speed": 0.3,
+        "drive": {"amplitude": force, "frequency": omega},
+        "body": {"cubic_stiffness": cubic},
+        "initial": {"x": 0, "velocity": 0},
+    }
+    state = answered(scene)
+
+    assert state.velocity_amplitude == pytest.approx(0.5 * np.ptp(last.y[1]), rel=1e-6)
+
+
+def test_both_states_of_a_bistable_oscillator_are_found_and_are_those_of_another_integration() -> None:
+    scene: dict[str, Any] = {
+        "damping_ratio": 0.02,
+        "normal_load": 0.05,
+        "belt_speed": 0.1,
+        "drive": {"amplitude": 1, "frequency": 1.8},
+        "body": {"cubic_stiffness": 0.3},
+    }
+    low, high = (steady(scene, COULOMB, start=(x, 0.0)).mean for x in (3.0, 0.0))
+    state = answered(scene)
+
+    assert state.status == "not_unique"
+    assert [state.mean_low, state.mean_high] == pytest.approx(sorted([low, high]), abs=1e-7)
+    assert low < 0.5 * high
+    assert state.reason.startswith("springs and dashpots are not linear: ")
+    for x, mean in ((3, low), (0, high)):
+        chosen = answered(scene | {"initial": {"x": x}})
+        assert (chosen.status, chosen.unique) == ("ok", "no")
+        assert chosen.mean_friction == pytest.approx(mean, abs=1e-7)
+
+
+@pytest.mark.parametrize("method", ["auto", "march"])
+@pytest.mark.parametrize("cubic", [-0.05, -1.0, -100.0])
+def test_a_body_without_a_steady_state_fails_with_the_reason(cubic: float, method: str) -> None:
+    scene = LINE | {"normal_load": 1, "belt_speed": 0.5, "drive": {"amplitude": 3, "frequency": 1}}
+    state = answered(scene | {"body": {"cubic_stiffness": cubic}}, method=method)
+
+    assert state.status == "failed"
+    assert ("starts run away" if method == "auto" else "grows without bound") in state.reason
+
+
+def test_starts_that_run_away_beside_a_steady_state_are_told() -> None:
+    scene = LINE | {"normal_load": 1, "belt_speed": 0.5, "drive": {"amplitude": 3, "frequency": 1}}
+    scene |= {"body": {"cubic_stiffness": -0.01}}
+    state = answered(scene)
+
+    assert (state.status, state.unique) == ("ok", "no")
+    assert "starts run away: far out the spring along the belt pushes outward" in state.reason
+    assert state.mean_friction == pytest.approx(steady(scene, COULOMB).mean, abs=1e-8)
+    lost = answered(scene | {"initial": {"x": 30}})
+    assert lost.status == "failed"
+    assert lost.reason.startswith("from scene.initial the motion runs away")
+
+
+def test_marching_finds_the_same() -> None:
+    scene = LINE | {"body": BENT}
+    state, marched = answered(scene), answered(scene, method="march", tolerance=1e-5)
+
+    assert marched.status == "ok"
+    assert abs(state.mean_friction - marched.mean_friction) <= state.error + marched.error
+
+
+@pytest.mark.parametrize("method", ["exact", "mdsm", "harmonic_balance"])
+def test_methods_of_linear_bodies_refuse_with_the_keys(method: str) -> None:
+    state = answered(LINE | {"body": {"curvature": 0.01, "cubic_stiffness": 1}}, method=method)
+
+    assert state.status == "refused"
+    assert f"{method} does not take body.cubic_stiffness and body.curvature" in state.reason
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.5, 3.0])
+def test_an_undriven_body_slides_or_sticks_as_its_integration_says(speed: float) -> None:
+    cubic, mu, load = 0.5, 0.4, 2.0
+    scene = {
+        "damping_ratio": 0.1,
+        "normal_load": load,
+        "belt_speed": speed,
+        "body": {"cubic_stiffness": cubic},
+    }
+    state = answered(scene | {"initial": {"x": 1.5, "velocity": 0.0}}, tolerance=1e-9)
+
+    assert state.status == "ok", state.reason
+    if speed:
+        assert state.mean_friction == pytest.approx(mu, abs=1e-9)
+        return
+    # at rest where the spring holds less than friction, after swings that it loses
+    x, side = 1.5, -1.0
+    while x + cubic * x**3 > mu * load or x + cubic * x**3 < -mu * load:
+
+        def rates(tau: float, now: Any, side: float = side) -> list[float]:
+            return [now[1], -0.2 * now[1] - now[0] - cubic * now[0] ** 3 - side * mu * load]
+
+        def stops(tau: float, now: Any) -> float:
+            return float(now[1])
+
+        stops.terminal, stops.direction = True, -side  # type: ignore[attr-defined]
+        x = solve_ivp(rates, (0, 9), [x, side * 1e-13], "DOP853", events=stops, rtol=1e-12, atol=1e-13).y[
+            0, -1
+        ]
+        side = -side
+    assert state.mean_friction == pytest.approx((x + cubic * x**3) / load, abs=1e-8)

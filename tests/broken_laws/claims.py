@@ -6,9 +6,12 @@ import math
 from typing import Any
 
 from broken_laws.case import Case, bug
-from broken_laws.twins import BreakingAway, Bristles, Falling, curve
+from broken_laws.twins import Falling
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.lugre import LuGre
+from frictionlab.laws.stribeck_bristle import stribeck_curve
 
 
 class UnsignedPower(Dahl):
@@ -26,7 +29,7 @@ class UnsignedPower(Dahl):
 def smoothed_rate(law: Any, v: Any, z: Any) -> Any:
     """|v| as the root of v^2 + width^2: the width of a method in the law."""
     speed = math.sqrt((v * v.conjugate()).real + 1e-12)
-    return v - (law.stiffness * speed / curve(law, speed)) * z
+    return v - (law.bristle_stiffness * speed / stribeck_curve(law, speed)) * z
 
 
 CASES = (
@@ -52,42 +55,44 @@ CASES = (
         sliding_friction=lambda law, speed: Falling.sliding_friction(law, speed) * math.tanh(speed / 1e-6),
     ),
     bug("SaysVanishing", Falling, "not_smoothed", vanishes_at_rest=lambda law: True),
-    bug("SmoothedBristles", Bristles, "held_at_rest", rate=smoothed_rate),
+    bug("SmoothedLuGre", LuGre, "held_at_rest", rate=smoothed_rate),
     bug(  # bristles slip however far bends further: only half of what goes is taken back
         "BoundLost", Dahl, "invariant_set", rate=lambda law, v, z: v - 0.5 * (abs(v) / law.saturation) * z
     ),
     Case(UnsignedPower, Dahl, "invariant_set"),
     bug(
         "FeedingDamping",
-        Bristles,
+        LuGre,
         "passivity",
-        friction=lambda law, v, z, dz: law.stiffness * z - law.damping * dz + law.viscosity * v,
+        friction=lambda law, v, z, dz: (
+            law.bristle_stiffness * z - law.bristle_damping * dz + law.viscosity * v
+        ),
     ),
     bug(  # the bound with its ratio upside down
         "BoundUpsideDown",
-        Bristles,
+        LuGre,
         "passivity",
         examples=100,
-        passive=lambda law: law.viscosity >= law.damping * law.drop / (law.mu + law.drop),
+        passive=lambda law: law.viscosity >= law.bristle_damping * (1.0 - law.mu_kinetic / law.peak),
     ),
-    bug("SaysNotPassive", Bristles, "not_passive", passive=lambda law: False),
-    bug("SaysDampsAcross", Bristles, "damps_across", damps_across=lambda law, speed: law.planar != "rotated"),
+    bug("SaysNotPassive", LuGre, "not_passive", passive=lambda law: False),
+    bug("SaysDampsAcross", LuGre, "damps_across", damps_across=lambda law, speed: law.planar != "rotated"),
     bug(  # forgets that damping knows speed
         "SaysRateIndependent",
-        Bristles,
+        LuGre,
         "rate_independence",
         rate_independent=lambda law: law.constant_sliding_friction(),
     ),
     bug(  # of the peak in place of the curve
         "RateTooSmall",
-        Bristles,
+        LuGre,
         "largest_rate",
-        largest_rate=lambda law, speed: law.stiffness * speed / (law.mu + law.drop),
+        largest_rate=lambda law, speed: law.bristle_stiffness * speed / law.peak,
     ),
     bug(  # forgets how steeply bristles break away
         "RateOfBreakaway",
-        BreakingAway,
+        ElastoPlastic,
         "largest_rate",
-        largest_rate=lambda law, speed: law.stiffness * speed / curve(law, speed),
+        largest_rate=lambda law, speed: law.bristle_stiffness * speed / stribeck_curve(law, speed),
     ),
 )

@@ -6,10 +6,11 @@ from typing import Any
 
 from broken_laws.case import Case
 from broken_laws.paths import TwiceAsFar
-from broken_laws.twins import Bristles, Falling
+from broken_laws.twins import Falling
 from frictionlab.laws.base import Positive
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
 
 
 class WrapsRound(Falling):
@@ -21,7 +22,7 @@ class WrapsRound(Falling):
         return self.mu + 1e-30 * cubed
 
 
-class BeyondNumba(Bristles):
+class BeyondNumba(LuGre):
     """Written as no compiler for numbers understands."""
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
@@ -49,8 +50,8 @@ class StopsShort(Jenkins):
 
 CASES = (
     Case(WrapsRound, Falling, "compiled_on_the_line"),
-    Case(BeyondNumba, Bristles, "compiled_on_the_line"),
-    Case(BeyondNumba, Bristles, "compiled_in_the_plane"),
+    Case(BeyondNumba, LuGre, "compiled_on_the_line"),
+    Case(BeyondNumba, LuGre, "compiled_in_the_plane"),
     Case(StopsShort, Jenkins, "coulomb_limit_of_prescribed_slip"),
     Case(MemoryOfItsOwnLength, Dahl, "coulomb_limit_of_a_body"),
     Case(TwiceAsFar, Dahl, "two_methods"),

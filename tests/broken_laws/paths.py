@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from broken_laws.case import Case, bug
-from broken_laws.twins import BreakingAway, Bristles, broken, curve
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic, breakaway_share
 from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
+from frictionlab.laws.stribeck_bristle import stribeck_curve
 
 
 class TwiceAsFar(Dahl):
@@ -28,9 +29,8 @@ class SaturatesEarly(Dahl):
 
 
 def towards_another_curve(law: Any, v: Any, z: Any) -> Any:
-    """exp(-u) in place of exp(-u^2)."""
-    fallen = law.mu + law.drop * math.exp(-abs(v) / law.speed)
-    return v - (law.stiffness * abs(v) / fallen) * z
+    """Of twice the speed of the fall."""
+    return v - (law.bristle_stiffness * abs(v) / stribeck_curve(law, 0.5 * abs(v))) * z
 
 
 def straightened(law: Any, z: Any, path: Any) -> Any:
@@ -44,8 +44,8 @@ def straightened(law: Any, z: Any, path: Any) -> Any:
 
 def slips_back(law: Any, v: Any, z: Any) -> Any:
     """Broken away whichever way it slips: without the branch of unloading."""
-    most = curve(law, abs(v)) / law.stiffness
-    return v - (broken(abs(z), 0.5 * law.mu / law.stiffness, most) * abs(v) / most) * z
+    most = stribeck_curve(law, abs(v)) / law.bristle_stiffness
+    return v - (breakaway_share(abs(z), law.elastic_deflection(), most) * abs(v) / most) * z
 
 
 def yields_early(law: Any, v: Any, z: Any) -> Any:
@@ -57,16 +57,16 @@ def yields_early(law: Any, v: Any, z: Any) -> Any:
 
 
 CASES = (
-    bug("OtherCurve", Bristles, "steady_sliding", rate=towards_another_curve),
+    bug("OtherCurve", LuGre, "steady_sliding", rate=towards_another_curve),
     Case(TwiceAsFar, Dahl, "exact_path"),
     bug("Straightened", Dahl, "path_splitting", deflected=straightened),
     Case(SaturatesEarly, Dahl, "saturation_path"),
     bug(  # that of quick slip
         "ElasticTooFar",
-        BreakingAway,
+        ElastoPlastic,
         "elastic_deflection",
-        elastic_deflection=lambda law: law.mu / law.stiffness,
+        elastic_deflection=lambda law: law.mu_kinetic / law.bristle_stiffness,
     ),
-    bug("SlipsBack", BreakingAway, "elastic_unloading", rate=slips_back),
+    bug("SlipsBack", ElastoPlastic, "elastic_unloading", rate=slips_back),
     bug("YieldsEarly", Jenkins, "yield_deflection", rate=yields_early),
 )

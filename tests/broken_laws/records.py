@@ -7,10 +7,12 @@ import random
 from typing import Any, ClassVar
 
 from broken_laws.case import Case, bug
-from broken_laws.twins import Bristles, Falling, curve
+from broken_laws.twins import Falling
 from frictionlab.laws.base import NonNegative, PerSpeed
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.lugre import LuGre
+from frictionlab.laws.stribeck_bristle import stribeck_curve
 
 
 class WithoutSource(Falling):
@@ -58,7 +60,7 @@ class Shares(Falling):
         return self.curve.setdefault(speed, super().sliding_friction(speed))
 
 
-class LeavesBehind(Bristles):
+class LeavesBehind(LuGre):
     """Friction of the rate that was asked for last, whoever asked."""
 
     left: ClassVar[list[float]] = [0.0]
@@ -90,7 +92,7 @@ def falls_short(law: Any, speed: float) -> float:
 
 def of_a_direction(law: Any, v: Any, z: Any) -> Any:
     """v/|v| of nothing at rest."""
-    return abs(v) * (v / abs(v) - law.stiffness / curve(law, abs(v)) * z)
+    return abs(v) * (v / abs(v) - law.bristle_stiffness / stribeck_curve(law, abs(v)) * z)
 
 
 def overflowing(law: Any, speed: float) -> float:
@@ -100,7 +102,7 @@ def overflowing(law: Any, speed: float) -> float:
 
 def scattered(law: Any, v: Any, z: Any, dz: Any) -> Any:
     """By chance."""
-    return Bristles.friction(law, v, z, dz) * random.uniform(0.999, 1.001)
+    return LuGre.friction(law, v, z, dz) * random.uniform(0.999, 1.001)
 
 
 CASES = (
@@ -115,14 +117,14 @@ CASES = (
     bug("NotANumber", Falling, "answers", sliding_friction=falls_short),
     bug(
         "ComplexOnTheLine",
-        Bristles,
+        LuGre,
         "answers",
-        friction=lambda law, v, z, dz: Bristles.friction(law, v, z, dz) + 0j,
+        friction=lambda law, v, z, dz: LuGre.friction(law, v, z, dz) + 0j,
     ),
-    bug("DividesAtRest", Bristles, "extremes", rate=of_a_direction),
+    bug("DividesAtRest", LuGre, "extremes", rate=of_a_direction),
     bug("Overflows", Falling, "extremes", sliding_friction=overflowing),
-    bug("Random", Bristles, "repeatable", friction=scattered),
-    Case(LeavesBehind, Bristles, "repeatable"),
+    bug("Random", LuGre, "repeatable", friction=scattered),
+    Case(LeavesBehind, LuGre, "repeatable"),
     Case(Shares, Falling, "parameters_matter"),
     Case(CountsInstances, Falling, "instances_apart"),
     bug(

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from broken_laws.case import Case, bug
-from broken_laws.twins import BreakingAway, Bristles, Falling, curve
+from broken_laws.twins import Falling
 from frictionlab.laws.base import Positive
 from frictionlab.laws.compliant import Stiffness
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.lugre import LuGre
+from frictionlab.laws.stribeck_bristle import stribeck_curve
 
 
 class SpeedWithoutUnits(Falling):
@@ -16,7 +19,7 @@ class SpeedWithoutUnits(Falling):
     speed: Positive
 
 
-class DampingInUnitsOfStiffness(Bristles):
+class DampingInUnitsOfStiffness(LuGre):
     """Damping is annotated as a stiffness."""
 
     damping: Stiffness
@@ -25,8 +28,8 @@ class DampingInUnitsOfStiffness(Bristles):
 def by_axis(law: Any, v: Any, z: Any) -> Any:
     """In the plane two laws of one direction, called vectorial."""
     if isinstance(v, complex):
-        return complex(Bristles.rate(law, v.real, z.real), Bristles.rate(law, v.imag, z.imag))
-    return Bristles.rate(law, v, z)
+        return complex(LuGre.rate(law, v.real, z.real), LuGre.rate(law, v.imag, z.imag))
+    return LuGre.rate(law, v, z)
 
 
 def within_a_square(law: Any, v: complex) -> complex:
@@ -47,20 +50,20 @@ def weaker_in_the_plane(law: Any, v: complex) -> complex:
 CASES = (
     bug(  # slip where speed should stand
         "MissingAbs",
-        Bristles,
+        LuGre,
         "oddness",
-        rate=lambda law, v, z: v - (law.stiffness * v.real / curve(law, abs(v))) * z,
+        rate=lambda law, v, z: v - (law.bristle_stiffness * v.real / stribeck_curve(law, abs(v))) * z,
     ),
     bug(  # Dupont's alpha of z in place of |z|: bristles bent backwards never break away
         "SignedBreakaway",
-        BreakingAway,
+        ElastoPlastic,
         "oddness",
-        rate=lambda law, v, z: v if z.real < 0.0 else BreakingAway.rate(law, v, z),
+        rate=lambda law, v, z: v if z.real < 0.0 else ElastoPlastic.rate(law, v, z),
     ),
-    bug("PerAxis", Bristles, "rotation", rate=by_axis),
+    bug("PerAxis", LuGre, "rotation", rate=by_axis),
     bug("SquareOfFriction", Falling, "rotation", sliding_vector=within_a_square),
     bug("Handed", Falling, "reflection", sliding_vector=turned_aside),
     bug("WeakerInThePlane", Falling, "straight_planar_slide", sliding_vector=weaker_in_the_plane),
     Case(SpeedWithoutUnits, Falling, "unit_scaling"),
-    Case(DampingInUnitsOfStiffness, Bristles, "unit_scaling"),
+    Case(DampingInUnitsOfStiffness, LuGre, "unit_scaling"),
 )

@@ -139,6 +139,7 @@ SI: dict[str, InSI] = {
 _SCALES = {
     "velocity": (
         *("belt_speed", "belt_speed_error", "reversal_end", "reversal_end_error", "velocity"),
+        *("not_unique_from", "not_unique_to"),
         *("velocity_amplitude", "transverse_velocity_amplitude", "v1", "v2", "slip", "slip_transverse"),
     ),
     "length": ("x", "x1", "x2"),
@@ -322,6 +323,8 @@ CURVES: dict[str, str] = {
     "reduction": "largest fall of mean friction below that of steady sliding",
     "reduction_error": "bound on its error",
     "model_distance": "of a reduced model, measured by its own curve: its largest distance to the full means",
+    "not_unique_from": "lowest belt speed of a point that is not_unique",
+    "not_unique_to": "highest belt speed of such a point; of those between, each row says whether it is one",
     "reason": "why a measure is empty",
 }
 """The columns of the table of curves after the inputs."""

@@ -110,9 +110,9 @@ class Facts:
         return {key: scale for key, scale in found.items() if scale == scale}
 
     def speed_in_given_units(self, curve: CurveRows, row: pd.Series, name: str) -> tuple[float, float]:
-        """A belt speed of a row of a curve, and its error."""
+        """A belt speed of a row of a curve, and its error; 0 for that of a point."""
         scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
-        return scale * float(row[name]), scale * float(row[f"{name}_error"])
+        return scale * float(row[name]), scale * float(row.get(f"{name}_error", 0.0))
 
 
 def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:

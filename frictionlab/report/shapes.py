@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import pandas as pd
 from markupsafe import Markup
 
+from frictionlab.columns import ALSO_IN_SI
 from frictionlab.printable import with_error
 from frictionlab.report.facts import CurveRows, Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
@@ -38,6 +39,8 @@ SHAPE_HEADS = {
     "shape_initial": "curvature at rest",
     "shape_by_initial": "shape at rest",
     "model_distance": "distance to the full curve",
+    "not_unique_from": "not unique from",
+    "not_unique_to": "not unique to",
 }
 """Columns of ``curves.csv`` that are shown, and their heads."""
 
@@ -219,7 +222,7 @@ def shape_grid(run: Facts) -> Grid | None:
         [*who, *(_measure(run, curve, name) for name in own)]
         for who, curve in zip(whose(curves), curves, strict=True)
     )
-    heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name == "reversal_end" else "") for name in own]
+    heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name in ALSO_IN_SI else "") for name in own]
     caption = "Shape of each curve against its chord, the line from rest to the end of reversal"
     found = grid(caption, ["law", "method", "curve", *heads], rows, "curves", "curves.csv", len(table))
     return found._replace(below=" ".join(filter(None, [found.below, *_missing(table)])))
@@ -238,7 +241,7 @@ def _measure(run: Facts, curve: CurveRows, name: str) -> Cell:
         return row[name]
     if pd.isna(row[name]):
         return ""
-    if name == "reversal_end":
+    if name in ALSO_IN_SI:
         return with_error(*run.speed_in_given_units(curve, row, name))
     return (
         size(row[name])

@@ -26,6 +26,8 @@ from frictionlab.shape.verdict import Estimate, FrictionCurve, Shape, Unreadable
 
 NOT_ASKED_FOR = f"the table lacks columns that curves are read from: {', '.join(OF_SHAPE)}"
 CURVE_TEXT = frozenset({"shape", "shape_by_initial", "reason"})
+WHERE_NOT_UNIQUE = "not_unique_from", "not_unique_to"
+"""Columns that are there where some curve has them."""
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
 
 
@@ -43,7 +45,7 @@ def curve_table(
     keys = curve_inputs(table.columns)
     groups = table.groupby(keys, sort=False, dropna=False).indices if len(table) else {}
     if all(len(places) < 2 for places in groups.values()):
-        return pd.DataFrame(columns=[*keys, *CURVES])
+        return pd.DataFrame(columns=[*keys, *(name for name in CURVES if name not in WHERE_NOT_UNIQUE)])
     places = sorted((np.sort(found) for found in groups.values()), key=lambda found: int(found[0]))
     heads = table.loc[:, keys].iloc[[found[0] for found in places]].reset_index(drop=True)
     # without velocity_ratio the end of reversal is still bracketed by the reversals counted
@@ -51,12 +53,15 @@ def curve_table(
         return pd.concat([heads, _frame([{"reason": NOT_ASKED_FOR}] * len(heads))], axis=1)
     numbers = table.reindex(columns=_NEEDED).to_numpy(dtype=float)
     usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)
+    several = (table["status"] == "not_unique").to_numpy()
     inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]
     read = [
         _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws), given.get("method") in reduced)
+        | _not_unique(numbers[found[several[found]], 0])
         for found, given in zip(places, inputs, strict=True)
     ]
     own, scales = _frame(read), _speed_scales(table, places)
+    own = own.drop(columns=[name for name in WHERE_NOT_UNIQUE if own[name].isna().all()])
     if scales:
         told = column_in_si_words(own["reason"], scales)
         own["reason"] = pd.Series(told, own.index, own["reason"].dtype)
@@ -181,6 +186,15 @@ def _measures(rows: Rows, loads: Loads, of_model: bool) -> dict[str, Any]:
     except UnreadableCurve as problem:
         return found | {"reason": str(problem)}
     return found | _shape(shape)
+
+
+def _not_unique(belt_speeds: Floats) -> dict[str, float]:
+    """Between which belt speeds the points lie that are not unique, these."""
+    return (
+        dict(zip(WHERE_NOT_UNIQUE, (belt_speeds.min(), belt_speeds.max()), strict=True))
+        if belt_speeds.size
+        else {}
+    )
 
 
 def _reduction(rows: Rows) -> dict[str, float]:

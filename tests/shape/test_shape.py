@@ -419,13 +419,25 @@ def test_there_is_one_row_per_curve_inputs_first(family: pd.DataFrame) -> None:
     rows = curve_table(family)
 
     assert list(rows.columns[:3]) == ["law", "kind", "method"]
-    assert list(rows.columns[-len(CURVES) :]) == list(CURVES)
+    assert [name for name in CURVES if name not in rows] == ["not_unique_from", "not_unique_to"]
+    assert list(rows.columns[2 - len(CURVES) :]) == [name for name in CURVES if name in rows]
     assert "scene.belt_speed" not in rows
     assert list(zip(rows["method"], rows["scene.normal_load"], rows["shape"], strict=True)) == [
         ("auto", 1.0, "convex"),
         ("auto", 10.0, "concave"),
         ("second", 10.0, "concave"),
     ]
+
+
+def test_a_curve_tells_between_which_belt_speeds_its_state_is_not_unique(family: pd.DataFrame) -> None:
+    table = family.copy()
+    light = (table["scene.normal_load"] == 1.0) & table["scene.belt_speed"].isin([2.5, 3.0, 7.0])
+    table.loc[light, "status"] = "not_unique"
+    rows = curve_table(table)
+
+    assert rows["not_unique_from"].tolist()[:1] == [2.5]
+    assert rows["not_unique_to"].tolist()[:1] == [7.0]
+    assert rows[["not_unique_from", "not_unique_to"]].iloc[1:].isna().all(axis=None)
 
 
 def test_points_without_a_number_are_left_out(family: pd.DataFrame) -> None:

@@ -30,7 +30,7 @@ def fit_figure(found: Any, title: str = "") -> Figure:
     looks = [CYCLE[place % len(CYCLE)] for place in range(len(found.fitted))]
     entries: list[Any] = [Line2D([], [], label="measured", **MEASURED)]
     entries += [
-        Line2D([], [], label=each.model.label, **look) for each, look in zip(found.fitted, looks, strict=True)
+        Line2D([], [], label=each.model.words, **look) for each, look in zip(found.fitted, looks, strict=True)
     ]
     with mpl.rc_context(STYLE):
         sheet = Sheet.blank(3, Heading(printable(title), "double"), entries)

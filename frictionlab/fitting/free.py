@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.mistakes.notes import closest
+from frictionlab.mistakes.notes import PYTHON, Notes, closest, dotted
 from frictionlab.quantities import Floats, given_values
 from frictionlab.scene.scene import Scene
+from frictionlab.study.data import read_range
+from frictionlab.study.objects import kind_of
 
 LOG_ABOVE = 100.0
 """Ratio of the ends of a positive range above which it is searched by its logarithm."""
@@ -59,8 +59,14 @@ class Model:
 
     @property
     def label(self) -> str:
-        """What the law is called."""
+        """What tables call the law."""
         return self.law.label or type(self.law).__name__
+
+    @property
+    def words(self) -> str:
+        """What sentences and figures call it."""
+        own = self.law.label not in ("", kind_of(self.law))
+        return self.label if own else type(self.law).in_words or self.label
 
     def values(self, shares: Floats) -> dict[str, float]:
         """The free numbers at these shares of their ranges."""
@@ -125,27 +131,12 @@ def _numbers_of(values: Mapping[str, Any], before: str) -> dict[str, Any]:
 
 
 def _range(name: str, given: Any) -> FreeNumber:
-    """A pair, or a mapping with from, to and spacing. Raises ValueError."""
-    asked = given if isinstance(given, Mapping) else {"from": None, "to": None}
-    if isinstance(given, Mapping):
-        if not {"from", "to"} <= {*given} or {*given} - {"from", "to", "spacing"}:
-            raise ValueError(
-                f"free.{name}: must have from and to, and may have spacing: linear or log, got {given!r}"
-            )
-        ends = given["from"], given["to"]
-    elif isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
-        ends = given[0], given[1]
-    else:
-        raise ValueError(f"free.{name}: must be a range such as (0.1, 1.0), got {given!r}")
-    try:
-        low, high = (float(end) for end in ends)
-    except (TypeError, ValueError):
-        raise ValueError(f"free.{name}: the ends of a range must be numbers, got {ends!r}") from None
-    if not (np.isfinite([low, high]).all() and low < high):
-        raise ValueError(f"free.{name}: the range must rise and be finite, got {low:g} to {high:g}")
-    spacing = asked.get("spacing", "log" if low > 0.0 and high / low >= LOG_ABOVE else "linear")
-    if spacing not in ("linear", "log"):
-        raise ValueError(f"free.{name}.spacing: must be linear or log, got {spacing!r}")
-    if spacing == "log" and not low > 0.0:
-        raise ValueError(f"free.{name}: a log range must begin above 0, got {low:g}")
-    return FreeNumber(name, low, high, spacing == "log")
+    """Raises ValueError with the first mistake in a range."""
+    notes = Notes(notation=PYTHON)
+    read = read_range(given, name, notes)
+    if notes.all:
+        raise ValueError(f"{dotted(notes.all[0].path)}: {notes.all[0].what}")
+    assert read is not None
+    low, high, spacing = read
+    far = low > 0.0 and high / low >= LOG_ABOVE
+    return FreeNumber(name, low, high, spacing == "log" or (spacing is None and far))

@@ -162,7 +162,7 @@ class FittedLaws:
         for each in self.fitted:
             try:
                 for what, find in PARTS_OF_A_FIT.items():
-                    tell(f"{each.model.label}: {what}")
+                    tell(f"{each.model.words}: {what}")
                     find(each)
             except KeyboardInterrupt:
                 if not done:
@@ -295,7 +295,7 @@ class FittedLaws:
 def _which(fit: FittedLaws) -> list[str]:
     best, told = fit.best, []
     out = f"{with_error(best.left_out.rms, best.left_out.error)} on blocks left out"
-    told.append(f"{best.model.label} fits with an rms of {best.rms:.4g}, {out}")
+    told.append(f"{best.model.words} fits with an rms of {best.rms:.4g}, {out}")
     for each in sorted(fit.fitted, key=lambda each: each.left_out.rms):
         if each is best:
             continue
@@ -305,9 +305,9 @@ def _which(fit: FittedLaws) -> list[str]:
             what = (
                 "it is simpler: the data do not ask for more" if fewer else "the data do not tell them apart"
             )
-            told.append(f"{each.model.label} fits as well ({each.left_out.rms:.4g} left out); {what}")
+            told.append(f"{each.model.words} fits as well ({each.left_out.rms:.4g} left out); {what}")
         else:
-            told.append(f"{each.model.label} fits worse: {each.left_out.rms:.4g} on blocks left out")
+            told.append(f"{each.model.words} fits worse: {each.left_out.rms:.4g} on blocks left out")
     return told + [f"{law} has no fit: {why}" for law, why in fit.failed.items()]
 
 
@@ -333,7 +333,7 @@ def _what_to_know(fit: FittedLaws) -> list[str]:
     if fit.measured.missing:
         told.append(f"{fit.measured.missing} samples are missing and were left out")
     for each in fit.fitted:
-        label, several = each.model.label, "" if len(fit.fitted) == 1 else f"{each.model.label}: "
+        label, several = each.model.words, "" if len(fit.fitted) == 1 else f"{each.model.words}: "
         for number, bound in zip(each.model.free, each.on_a_bound, strict=True):
             if bound:
                 told.append(

@@ -49,7 +49,7 @@ def search(
     for place, start in enumerate(drawn, 1):
         ends.append(descend(residuals, start))
         if tell is not None:
-            tell(f"{residuals.model.label}: start {place} of {starts}")
+            tell(f"{residuals.model.words}: start {place} of {starts}")
     best = min(ends, key=lambda end: end.cost)
     same = [end for end in ends if _same(end, best)]
     others: list[Optimum] = []

@@ -39,7 +39,9 @@ def read_data(tree: dict[str, Any], notes: Notes, folder: FilePath | None) -> di
         if "data" not in tree:
             notes.on_key(("free",), "needs data: the measurements that numbers are fitted to")
         ranges = notes.mapping(tree["free"], ("free",))
-        told["free"] = {name: _range(value, name, notes) for name, value in (ranges or {}).items()}
+        for name, value in (ranges or {}).items():
+            read_range(value, name, notes)
+        told["free"] = ranges or {}
     return told
 
 
@@ -70,25 +72,31 @@ def _data(given: dict[str, Any], notes: Notes, folder: FilePath | None) -> DataF
     return DataFiles(tuple(named), known)
 
 
-def _range(value: Any, name: str, notes: Notes) -> Any:
-    """A pair, or from, to and spacing."""
+def read_range(value: Any, name: str, notes: Notes) -> tuple[float, float, str | None] | None:
+    """Ends and spacing of the range of a free number, a pair or from, to and spacing; None, noted, if it is none."""
     path: tuple[Any, ...] = ("free", name)
+    spacing = None
     if isinstance(value, dict):
         given = notes.mapping(value, path, RANGE_KEYS) or {}
         for end in RANGE_KEYS[:2]:
             if end not in given:
                 notes.add((*path, end), "required key is missing")
         if "spacing" in given:
-            notes.one_of(given["spacing"], (*path, "spacing"), SPACINGS)
+            spacing = notes.one_of(given["spacing"], (*path, "spacing"), SPACINGS)
         ends = [given.get("from"), given.get("to")]
         places: list[tuple[Any, ...]] = [(*path, "from"), (*path, "to")]
     elif isinstance(value, Sequence) and not isinstance(value, str) and len(value) == 2:
         ends, places = list(value), [(*path, 0), (*path, 1)]
     else:
         notes.add(path, f"must be a range such as [0.1, 1.0], got {value_text(value)}")
-        return value
-    read = [notes.number(end, place) for end, place in zip(ends, places, strict=True) if end is not None]
-    numbers = [number for number in read if number is not None]
-    if len(numbers) == 2 and not numbers[0] < numbers[1]:
-        notes.add(path, f"must rise, got {numbers[0]:g} to {numbers[1]:g}")
-    return value
+        return None
+    low, high = (
+        None if end is None else notes.number(end, place) for end, place in zip(ends, places, strict=True)
+    )
+    if low is None or high is None:
+        return None
+    if not low < high:
+        notes.add(path, f"must rise, got {low:g} to {high:g}")
+    elif spacing == "log" and not low > 0.0:
+        notes.add(path, f"a log range must begin above 0, got {low:g}")
+    return low, high, spacing

@@ -212,7 +212,7 @@ def test_missing_samples_of_a_path_are_left_out_and_told() -> None:
     [
         ({}, "free must be a mapping such as"),
         ({"muu": (0.1, 1.0)}, "no number 'muu'.*did you mean 'mu'"),
-        ({"mu": (1.0, 0.1)}, "free.mu: the range must rise"),
+        ({"mu": (1.0, 0.1)}, "free.mu: must rise, got 1 to 0.1"),
         ({"mu": 0.4}, "free.mu: must be a range such as"),
         ({"mu": {"from": 0.0, "to": 1.0, "spacing": "log"}}, "a log range must begin above 0"),
     ],
@@ -247,7 +247,7 @@ def test_the_command_writes_tables_a_figure_and_a_page(
 ) -> None:
     assert cli.main(["fit", str(study)]) == 0
     told, folder = capsys.readouterr().out, study.parent / "fits" / "study"
-    assert told.startswith("coulomb fits with an rms of ")
+    assert told.startswith("Coulomb fits with an rms of ")
     fitted = pd.read_csv(folder / "fit.csv")
     assert fitted["value"].to_list() == pytest.approx([0.4], abs=0.002)
     names = "law parameter value block_error naive_error low high shape at_bound"
@@ -298,6 +298,11 @@ def test_run_solves_the_study_where_it_was_measured(study: Path) -> None:
         ),
         ("v, mean", "w, mean", "there is no column 'w', there are v, mu_bar"),
         ("[0.1, 1.0]", "[1.0, 0.1]", "free.mu: must rise, got 1 to 0.1"),
+        (
+            "[0.1, 1.0]",
+            "{from: 0, to: 1, spacing: log}",
+            r"study.yaml:\d+:\d+: free.mu: a log range must begin",
+        ),
         ("data: {", "datas: {", "did you mean 'data'"),
     ],
 )

@@ -19,14 +19,10 @@ from frictionlab.study import Study
 class Run:
     """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
 
-    made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
-    its shape; none where belt speed is not swept or the run was stopped. onsets_made, boundaries_made: find the
-    onsets of its curves, and the lines on which their measures have given levels.
+    curves: one row per curve, with its shape; none where belt speed is not swept or the run was stopped.
     attractors: a row per Poincare point of every state that motions end in, where the study keeps them; else a row
     per state of the points that have several, None where no point has.
     harmonics: a row per harmonic of every orbit, None where the study does not keep them.
-    shown, found: of a table too long to be held, the rows that figures and pages show, and how many of all rows have
-    each status.
 
     >>> import frictionlab as fl
     >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
@@ -36,7 +32,7 @@ class Run:
     """
 
     study: Study
-    made: Callable[[], pd.DataFrame]
+    made: Callable[[], pd.DataFrame]  # the table, or what reads it from its file; so of the others
     orbits_made: Callable[[], pd.DataFrame | None]
     verdicts: tuple[Verdict, ...]
     folder: Path | None
@@ -44,8 +40,8 @@ class Run:
     curves: pd.DataFrame = field(default_factory=pd.DataFrame)
     onsets_made: Callable[[], pd.DataFrame] = pd.DataFrame
     boundaries_made: Callable[[], pd.DataFrame] = pd.DataFrame
-    shown: pd.DataFrame | None = None
-    found: Mapping[str, int] | None = None
+    shown: pd.DataFrame | None = None  # of a table too long to be held: the rows that figures and pages show
+    found: Mapping[str, int] | None = None  # and how many of all rows have each status
     attractors: pd.DataFrame | None = None
     harmonics: pd.DataFrame | None = None
 

@@ -58,6 +58,9 @@ ARROWS = {
             "compile laws orbit quantities scene theory methods.base methods.prescribed methods.refusals "
             "methods.words"
         ),
+        "methods.relay_locus": (
+            "compile laws numerics orbit quantities scene theory methods.base methods.words"
+        ),
         "methods.march": (
             "compile dynamics laws numerics orbit quantities scene theory methods.base methods.periodic "
             "methods.prescribed methods.refusals methods.shooting methods.under_way"
@@ -66,7 +69,9 @@ ARROWS = {
             "compile dynamics laws numerics orbit quantities scene theory methods.base methods.exact "
             "methods.prescribed methods.refusals methods.shooting methods.words"
         ),
-        "methods.auto": "laws methods.base methods.exact methods.shooting orbit scene methods.words",
+        "methods.auto": (
+            "laws methods.base methods.exact methods.relay_locus methods.shooting orbit scene methods.words"
+        ),
         "onsets": "laws methods.base methods.periodic orbit quantities scene theory",
         "registry": "faults laws methods.base mistakes",
         "study": "columns laws methods.base mistakes printable quantities registry scene units",

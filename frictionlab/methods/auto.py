@@ -12,6 +12,7 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import STATISTICAL, Answers, FoundState, Method
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.relay_locus.method import RelayLocus
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.words import AUTO, ModelWord
 from frictionlab.orbit.record import Orbit
@@ -19,10 +20,16 @@ from frictionlab.scene.scene import Scene
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
 """From the cheapest method to the most general one."""
+FOR_MEMORY: tuple[Method, ...] = (RelayLocus(),)
+"""For bodies that remember, which none of those takes."""
+
+
+def _methods_for(scene: Scene) -> tuple[Method, ...]:
+    return FOR_MEMORY if scene.remembers else METHODS_BY_COST
 
 
 class Auto(Method):
-    """Tries exact, then shooting, and says why.
+    """Tries exact, then shooting, and relay_locus for a body that remembers, and says why.
 
     One method solves a whole curve, since a change inside a curve would look like physics. An answer whose error is
     above the tolerance counts as failed.
@@ -43,7 +50,7 @@ class Auto(Method):
     def choice(self, scene: Scene, law: FrictionLaw) -> tuple[Method | None, str]:
         """The method for this scene and law, and why; None where every method refuses."""
         against: list[str] = []
-        for method in METHODS_BY_COST:
+        for method in _methods_for(scene):
             reason = method.refusal(scene, law)
             if reason is None:
                 why = against[-1].split(";")[0] if against else ModelWord.CHEAPEST.sentence
@@ -58,7 +65,7 @@ class Auto(Method):
 
     def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:
         """None where one method accepts them all; else one after another."""
-        for method in METHODS_BY_COST:
+        for method in _methods_for(scenes[0]):
             reasons = method.refusals(scenes, law)
             if not any(reasons):
                 return reasons

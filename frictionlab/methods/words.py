@@ -39,6 +39,10 @@ class ModelWord(StrEnum):
         "x2 decays",
         "one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law",
     )
+    LOCUS = (
+        "relay locus",
+        "instants of stick and reversal by Newton's method, the body by all harmonics of its frequency response",
+    )
     SHOOTING_LINE = (
         "shooting 1DOF",
         "shooting: the fixed point of the map of one period, motion along the belt",
@@ -126,6 +130,11 @@ class ModelWord(StrEnum):
     NEIGHBOURS = (
         "unique: neighbours",
         "unique: friction never falls with speed, and motions near this one come nearer (Leine & van de Wouw, 2008)",
+    )
+    PASSIVE = (
+        "unique: passive",
+        "unique: the body dissipates at every harmonic and friction never falls with speed "
+        "(Leine & van de Wouw, 2008)",
     )
     SLOW_FALL = (
         "unique: slow fall",

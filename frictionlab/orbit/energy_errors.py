@@ -61,6 +61,9 @@ def energy_errors(
         friction = missing + put_in + viscous
     else:  # the motion is given: friction alone can be wrong
         friction = 4.0 * force * swing
+    if scenes[0].remembers:  # read as what the load gives less what friction takes
+        friction = put_in + belt * force + _ROUNDING * np.abs(read["energy_friction"])
+        viscous = put_in + friction
     contact = friction + force * belt
     found = {"input": put_in, "viscous": viscous, "friction": friction, "contact": contact}
     return {

@@ -73,6 +73,12 @@ def read_columns(
         found = _read_together(scenes, orbits())
     else:
         found = np.array([_read_one(scene, orbit(i)) for i, scene in enumerate(scenes)])
+    if scenes[0].remembers:
+        # What remembers takes the rest: no force of the body is recorded.
+        put_in, viscous, friction = (
+            READ.index(f"energy_{name}") for name in ("input", "viscous", "friction")
+        )
+        found[:, viscous] = found[:, put_in] - found[:, friction]
     found[:, _not_there(scenes[0])] = np.nan
     columns = {name: found[:, place].copy() for place, name in enumerate(READ)}
     if means is not None:

@@ -156,6 +156,11 @@ class Scene(ScenePart):
         return [] if self.body is None else self.body.terms
 
     @property
+    def remembers(self) -> bool:
+        """Whether the force of the body hangs on its motion long before."""
+        return not {"relaxation", "fractional"}.isdisjoint(self.body_terms)
+
+    @property
     def start(self) -> Initial:
         """``initial``; where it is left out, at rest on the belt with the spring undeflected."""
         return self.initial or Initial(velocity=self.belt_speed)

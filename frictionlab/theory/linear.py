@@ -9,6 +9,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import EPSILON, Floats
+from frictionlab.scene.receptance import RememberingBody, linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
@@ -36,6 +37,8 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
         return _largest_slip(scene, _coefficient(scene, law))
     if scene.degrees_of_freedom == 0:
         return abs(scene.motion().velocity)
+    if scene.remembers:
+        return abs(answered(linear_body(scene), Wave(scene.frequency, scene.mass().force), 1).phasor)
     mass = scene.mass()
     stiffness = complex(mass.stiffness - mass.frequency**2, mass.damping * mass.frequency)
     force = abs(mass.force) * mass.frequency
@@ -88,6 +91,12 @@ def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise |
 def _largest_slip(scene: Scene, coefficient: float) -> float:
     """Of its x1' minus the belt's vibration along x1, over the period of the scene; infinite without a bound."""
     signals = scene.signals()
+    if scene.remembers:
+        load = signals.load[0].plus(signals.normal_load.scaled(coefficient))
+        low, high = free_slip_signal(linear_body(scene), load, signals.belt[0], signals.period).extremes(
+            signals.period
+        )
+        return high if scene.belt_speed >= 0.0 else -low
     slip = piecewise(signals.belt[0], signals.edges())
     if scene.degrees_of_freedom > 0:
         response, _ = _response(scene, coefficient, 1)
@@ -95,6 +104,26 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
             return math.inf
         slip = less(response, slip)
     return (slip if scene.belt_speed >= 0.0 else slip.negative()).maximum()
+
+
+HARMONICS_OF_CORNERS = 400
+"""Of a load that is not a sum of sines, on a body that remembers."""
+
+
+def free_slip_signal(body: RememberingBody, load: Signal, belt: Signal, period: float) -> Signal:
+    """The slip velocity without friction on a belt of mean velocity zero, of a body of this frequency response."""
+    waves = load.waves
+    if load.pieces:
+        base = 2.0 * math.pi / period
+        every = [k * base for k in range(1, HARMONICS_OF_CORNERS + 1)]
+        waves += tuple(Wave(each, Signal((), load.pieces).harmonic(each, period)) for each in every)
+    return Signal(tuple(answered(body, each, 1) for each in waves)).plus(belt.scaled(-1.0))
+
+
+def answered(body: RememberingBody, wave: Wave, order: int) -> Wave:
+    """x1 under a force of this wave, or its derivative of order 1."""
+    response = body.receptance(np.array([wave.frequency]))[0]
+    return Wave(wave.frequency, complex((1j * wave.frequency) ** order * response * wave.phasor))
 
 
 def less(first: Piecewise, second: Piecewise) -> Piecewise:

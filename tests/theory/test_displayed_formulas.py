@@ -18,7 +18,9 @@ import frictionlab as fl
 from frictionlab import theory
 from frictionlab.laws.elasto_plastic import breakaway_share
 from frictionlab.scene.body import bent_force, on_the_line
+from frictionlab.scene.receptance import RememberingBody
 from frictionlab.theory.linear import friction_free_velocity
+from frictionlab.theory.periodic_response import periodic_response
 from frictionlab.theory.sliding_stability import SteadySliding
 
 PAGES = Path(__file__).parents[2] / "docs" / "theory"
@@ -196,9 +198,39 @@ def held_by_code(x: float, rate: float) -> float:
     return float(bent_force(on_the_line(scene.with_(body=body).mass()), x, rate))
 
 
+REMEMBERS = RememberingBody(
+    0.2,
+    relaxation=fl.Relaxation(stiffness=0.5, time=2.0, order=0.7),
+    fractional=fl.Fractional(coefficient=0.3, order=0.4),
+)
+
+
+def stiffness_that_remembers(p: complex) -> complex:
+    """The dynamic stiffness of that body."""
+    power = (2.0 * p) ** 0.7
+    return p**2 + 0.2 * p + 1.0 + 0.5 * power / (1.0 + power) + 0.3 * p**0.4
+
+
+def answer_to_a_step(tau: float, harmonics: int) -> float:
+    """V of the relay locus, its sum cut off, at the frequency 0.8."""
+    k = np.arange(1.0, harmonics + 1.0)
+    terms = [exp(0.8j * m * tau) / stiffness_that_remembers(0.8j * m) for m in k]
+    return 0.8 / (2.0 * pi) * (1.0 + 2.0 * float(np.sum(terms).real))
+
+
+def velocity_after_a_step(tau: float) -> float:
+    """The same as the package has it."""
+    found = periodic_response(REMEMBERS, 0.8)
+    panel = int(tau / found.period * found.panels)
+    place = 2.0 * (tau / found.period * found.panels - panel) - 1.0
+    return float(np.polynomial.chebyshev.chebval(place, found.value[panel]))
+
+
 MODEL = [
     Formula("motion", lambda: (0.0, acceleration_less_forces()), 2e-3),
     Formula("motion-bent", lambda: (held_by_bends(0.7, -1.1), held_by_code(0.7, -1.1))),
+    Formula("dynamic-stiffness", lambda: (stiffness_that_remembers(0.3j), REMEMBERS.dynamic_stiffness(0.3j))),
+    Formula("relay-locus", lambda: (answer_to_a_step(3.0, 5_000), velocity_after_a_step(3.0)), 1e-8),
     Formula("slip", lambda: ((orbit()["v1"] - v_b).to_numpy(), orbit()["slip"].to_numpy())),
     Formula(
         "load",

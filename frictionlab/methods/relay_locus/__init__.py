@@ -1,0 +1,1 @@
+"""Steady states of any linear body under Coulomb friction, from its frequency response."""

@@ -1,0 +1,209 @@
+"""The relay locus: instants of stick and reversal of any linear body of known frequency response."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+
+from frictionlab.compile.call import KernelCall
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Status, beyond_linear
+from frictionlab.methods.relay_locus import curve
+from frictionlab.methods.relay_locus.locus import MOST_INSTANTS
+from frictionlab.methods.relay_locus.orbit import BesideFriction, make_locus_orbits
+from frictionlab.methods.relay_locus.response import response_of
+from frictionlab.methods.relay_locus.rest_rule import rest_rule
+from frictionlab.methods.relay_locus.search import FINE
+from frictionlab.methods.words import ModelWord
+from frictionlab.orbit.record import Orbits
+from frictionlab.quantities import EPSILON, Floats
+from frictionlab.scene.receptance import linear_body
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.scene.signals import Signal, Wave
+from frictionlab.theory.linear import answered, free_slip_signal
+from frictionlab.theory.periodic_response import periodic_response
+
+TAKEN = ("relaxation", "fractional")
+"""Keys of a body that leave it linear."""
+REST_DEGREES = (8, 12, 16, 20, 28)
+"""Of friction in a rest."""
+GRADING = 4
+"""Of rests where memory has powers that are no whole numbers: makes t^(2 - q) smooth enough at every order q."""
+UNSOLVED = "no motion found that is checked: slip of one sign between its instants, friction within its limit at rest"
+HOLDS = "the belt is at rest and friction can hold the mass: it stays where it starts, with a mean friction between "
+
+
+class RelayLocus(Method):
+    """Steady states of Coulomb friction on any linear body, known by its frequency response: memory included.
+
+    Between its reversals and rests friction is constant, so that the motion is a sum of the body's responses to
+    steps, again in every period: all harmonics, summed in closed form. The instants at which the slip velocity is
+    zero, and friction in rests as polynomials, follow by Newton's method from a neighbour's or from a motion in
+    steps; slip and friction are then checked between them. Its error is that of the sums and of the polynomials.
+
+    Sources: Tsypkin (1984) for relays; Den Hartog (1931); Bagley & Torvik (1983) of fractional elements.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> scene = scene.with_(body=fl.Body(fractional=fl.Fractional(coefficient=0.2, order=0.5)))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="relay_locus")
+    >>> round(state.mean_friction, 10), state.error < 1e-12
+    (0.0847252865, True)
+    """
+
+    name: ClassVar[str] = "relay_locus"
+    resolves_events: ClassVar[bool] = True
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Anything but Coulomb friction on a driven line, on a body that is linear and dissipates, shaken by
+        sines."""
+        if law.memory_kind != "none" or not law.constant_sliding_friction() or not law.monotone():
+            return "on a body with memory only Coulomb friction (without mu_static) is solved, by relay_locus"
+        if reason := beyond_linear(self.name, scene, TAKEN):
+            return reason
+        if scene.degrees_of_freedom != 1:
+            return "relay_locus works along one line, with a mass: leave transverse and slip out"
+        if scene.undriven:
+            return "relay_locus needs a drive, whose period is that of the motion"
+        if not linear_body(scene).dissipates:
+            return "relay_locus needs a body that dissipates: give damping_ratio or a body with memory"
+        signals = scene.signals()
+        if signals.normal_load != Signal():
+            return "relay_locus needs a normal load that does not change"
+        if signals.load[0].pieces or signals.belt[0].pieces:
+            return "relay_locus needs waveforms of sines: sine or {harmonics: [...]}"
+        return None
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer scenes that differ in belt speed alone."""
+        return _Curve(scenes, law.sliding_friction(1.0), tolerance).answers()
+
+
+class _Curve:
+    """The scenes of one curve on their way to answers."""
+
+    def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
+        scene = scenes[0]
+        assert scene.normal_load is not None
+        self.scenes, self.coefficient, self.tolerance = scenes, coefficient, tolerance
+        self.normal_load, self.limit = scene.normal_load, coefficient * scene.normal_load
+        self.belt_speeds = belt_speeds_of(scenes)
+        self.load, self.belt = scene.signals().load[0], scene.signals().belt[0]
+        self.period = scene.signals().period
+        self.body = linear_body(scene)
+        n = len(scenes)
+        self.status: list[Status] = ["ok"] * n
+        self.reason, self.error_kind = [""] * n, ["estimated"] * n
+        self.model = [f"{ModelWord.LOCUS}; {ModelWord.PASSIVE}"] * n
+        self.rows = np.full((n, curve.COLUMNS), np.nan)
+        self.found = np.full((n, MOST_INSTANTS, 3 + REST_DEGREES[-1]), np.nan)
+        self.mean, self.error = np.full(n, np.nan), np.full(n, np.nan)
+        self.bounds, self.unique, self.seconds = np.full((n, 2), np.nan), [PROVED] * n, 0.0
+
+    def answers(self) -> Answers:
+        """Solve and judge."""
+        self.response = response_of(periodic_response(self.body, 2.0 * math.pi / self.period))
+        self.free = free_slip_signal(self.body, self.load, self.belt, self.period)
+        self.rules = tuple(rest_rule(degree, 1 if self.body.smooth else GRADING) for degree in REST_DEGREES)
+        reversing = self._without_reversal()
+        reversing = self._without_motion(reversing)
+        if len(reversing):
+            self._solve(reversing)
+        n = len(self.scenes)
+        return Answers(
+            status=self.status,
+            reason=self.reason,
+            model=self.model,
+            error_kind=self.error_kind,
+            mean=self.mean,
+            error=self.error,
+            period=np.where(np.isfinite(self.mean), float(self.scenes[0].periods), np.nan),
+            mean_low=self.bounds[:, 0],
+            mean_high=self.bounds[:, 1],
+            window=np.where(np.isfinite(self.bounds[:, 0]), float(self.scenes[0].periods), np.nan),
+            unique=self.unique,
+            seconds=np.full(n, self.seconds / n),
+            orbit=lambda i: self._orbits([i]).one(0),
+            orbits=lambda: self._orbits(range(n)),
+        )
+
+    def _without_reversal(self) -> Any:
+        """Settle belts that no slip overtakes; the places of the others."""
+        low, high = self.free.extremes(self.period)
+        forward, backward = self.belt_speeds >= max(high, 0.0), self.belt_speeds <= min(low, 0.0)
+        alone = (forward | backward) & (self.belt_speeds != 0.0)
+        self.mean[alone] = self.coefficient * np.sign(self.belt_speeds[alone])
+        self.error[alone] = 4.0 * EPSILON * self.coefficient
+        self.rows[alone, curve.COUNT] = 0.0
+        for i in np.flatnonzero(alone).tolist():
+            self.model[i], self.error_kind[i] = str(ModelWord.NO_REVERSAL), "guaranteed"
+        return np.flatnonzero(~alone)
+
+    def _without_motion(self, places: Any) -> Any:
+        """Settle a belt at rest that holds the mass; the places of the others."""
+        low, high = self.load.extremes(self.period)
+        low, high = (high - self.limit) / self.normal_load, (low + self.limit) / self.normal_load
+        still = self.belt.waves == () and low <= high
+        held = [i for i in places.tolist() if still and self.belt_speeds[i] == 0.0]
+        for i in held:
+            self.status[i], self.unique[i], self.error_kind[i] = "not_unique", NOT_UNIQUE, ""
+            self.reason[i] = f"{HOLDS}{low:.6g} and {high:.6g}"
+            self.model[i], self.bounds[i] = str(ModelWord.ANY_START), (low, high)
+        return np.setdiff1d(places, held)
+
+    def _solve(self, places: Any) -> None:
+        """From the fastest belt of a direction to the slowest, each from its neighbour."""
+        speeds = self.belt_speeds[places]
+        order = places[np.lexsort((-np.abs(speeds), speeds < 0.0))]
+        low, high = self.free.extremes(self.period)
+        given = np.array([self.limit, max(high, -low), self.body.fastest, self.response.error])
+        rows, found = self.rows[order], self.found[order]
+        _, self.seconds = KernelCall(curve.follow_curve).timed(
+            self.response, self.rules, waves_of(self.free), given, self.belt_speeds[order], rows, found
+        )
+        self.rows[order], self.found[order] = rows, found
+        fine = self.rows[places, curve.VERDICT] == FINE
+        good, per_mean = places[fine], self.period * self.normal_load
+        self.mean[good] = -self.rows[good, curve.IMPULSE] / per_mean
+        self.error[good] = self.rows[good, curve.ERROR] / per_mean
+        for i in places[~fine].tolist():
+            self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNSOLVED, "", ""
+            self.unique[i] = ""
+        for i in good[self.error[good] > self.tolerance].tolist():
+            self.reason[i] = f"error {self.error[i]:.1e} above the tolerance: only rounding errors remain"
+
+    def _orbits(self, places: Sequence[int]) -> Orbits:
+        """Of the scenes at these places; without panels where there is none."""
+        chosen, ends = list(places), np.zeros(len(places), np.int64)
+        counts = np.where(np.isfinite(self.mean[chosen]), self.rows[chosen, curve.COUNT], -1.0).astype(
+            np.int64
+        )
+        degrees = np.nan_to_num(self.rows[chosen, curve.DEGREE]).astype(np.int64)
+        position = Signal(tuple(answered(self.body, each, 0) for each in self.load.waves))
+        path = Signal(
+            tuple(Wave(each.frequency, each.phasor / (1j * each.frequency)) for each in self.belt.waves)
+        )
+        around = BesideFriction(waves_of(position), waves_of(self.belt), waves_of(path), self.body.smooth)
+        track = KernelCall(make_locus_orbits)(
+            self.response,
+            self.rules,
+            waves_of(self.free),
+            around,
+            np.array([self.limit, self.normal_load]),
+            self.belt_speeds[chosen],
+            (counts, degrees, self.found[chosen]),
+            ends,
+        )
+        last = int(ends[-1]) if len(ends) else 0
+        tau, x, v, friction, stick = (each[:last] for each in track[:5])
+        return Orbits(tau, x, v, friction, stick, ends)
+
+
+def waves_of(signal: Signal) -> Floats:
+    """Frequency, sine and cosine parts of each of its waves."""
+    rows = [(each.frequency, each.phasor.real, each.phasor.imag) for each in signal.waves]
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)

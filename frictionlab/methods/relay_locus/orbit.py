@@ -1,0 +1,197 @@
+"""One period of these motions as smooth panels."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner, njit
+from frictionlab.methods.relay_locus.locus import (
+    Instants,
+    LocusSetting,
+    jump,
+    length_of,
+    locus_slip,
+    mean_of_friction,
+)
+from frictionlab.methods.relay_locus.response import StepAnswer, free_slip, integral_at
+from frictionlab.methods.relay_locus.search import empty_motion
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.recorder import Track, grown, track_of
+
+FINEST_PANEL = 1e-4
+"""Share of the period of the first panel after an instant, where memory has powers that are no whole numbers."""
+PANELS = 24
+"""In a period at least."""
+
+
+class BesideFriction(NamedTuple):
+    """Waves [n, 3] of x1 without friction, of the belt's vibration and of its path; smooth: whether the body is,
+    after a jump of force."""
+
+    position: Any
+    belt: Any
+    path: Any
+    smooth: bool
+
+
+@njit
+def make_locus_orbits(
+    response: StepAnswer,
+    rules: Any,
+    waves: Any,
+    around: BesideFriction,
+    given: Any,
+    belt_speeds: Any,
+    solved: Any,
+    ends: Any,
+) -> Track:
+    """The panels of every orbit, one after another, that of belt speed i before panel ends[i].
+
+    given: limit of friction, normal load. solved: of each the number of instants, -1 without a motion and 0 where
+    slip never reverses, the place of its rule, and what ``follow_curve`` found."""
+    counts, degrees, found = solved
+    room, track = 64, track_of(64)
+    for i in range(belt_speeds.size):
+        if counts[i] >= 0:
+            setting = LocusSetting(response, rules[degrees[i]], waves, given[0], belt_speeds[i])
+            motion = as_found(setting, found[i], max(counts[i], 1))
+            edges = panel_edges(setting, motion, around.smooth)
+            if track.filled[0] + edges.size > room:
+                room = 2 * (room + edges.size)
+                track = grown(track, room)
+            note_locus(setting, motion, around, edges, given[1], track)
+        ends[i] = track.filled[0]
+    return track
+
+
+@inner
+def as_found(setting: LocusSetting, found: Any, count: int) -> Instants:
+    """The motion that was written; without instants slip of one sign from tau = 0 on."""
+    motion, rule = empty_motion(setting, count), setting.rule
+    motion.times[0], motion.modes[0] = 0.0, math.copysign(1.0, -setting.belt_speed)
+    for j in range(count):
+        if math.isfinite(found[j, 0]):
+            motion.times[j], motion.modes[j] = found[j, 0], found[j, 1]
+        if motion.modes[j] == 0.0:
+            for k in range(rule.nodes.size):
+                motion.friction[j, k] = found[j, 2 + k]
+            for g in range(rule.places.size):
+                total = 0.0
+                for k in range(rule.nodes.size):
+                    total = total + rule.of_all[g, k] * motion.friction[j, k]
+                motion.pushes[j, g] = total
+    return motion
+
+
+@inner
+def panel_edges(setting: LocusSetting, motion: Instants, smooth: bool) -> Any:
+    """Of a period from 0: at every instant, and closer after it where the body is not smooth; ascending."""
+    of, n = setting.response, motion.times.size
+    largest = of.period / max(PANELS, of.panels)
+    edges, count = np.empty(2 + n * 64 + 4 * max(PANELS, of.panels)), 0
+    edges[0], edges[1], count = 0.0, of.period, 2
+    for j in range(n):
+        start, length = motion.times[j] - of.period * math.floor(motion.times[j] / of.period), 0.0
+        r, whole = 0.0, length_of(motion, of.period, j)
+        while r < whole and count < edges.size:
+            edges[count] = start + r if start + r < of.period else start + r - of.period
+            count += 1
+            length = largest if smooth else min(largest, max(FINEST_PANEL * of.period, r))
+            r = r + min(
+                length,
+                max(0.5 * (whole - r), 1e-3 * length) if r + 1.5 * length > whole > r + length else length,
+            )
+    order = np.sort(edges[:count])
+    kept = 1
+    for k in range(1, count):
+        if order[k] - order[kept - 1] > 1e-14 * of.period:
+            order[kept] = order[k]
+            kept += 1
+    return order[:kept]
+
+
+@inner
+def note_locus(
+    setting: LocusSetting,
+    motion: Instants,
+    around: BesideFriction,
+    edges: Any,
+    normal_load: float,
+    track: Track,
+) -> None:
+    """The panels between these edges on a track with room for them."""
+    of = setting.response
+    mean = mean_of_friction(setting, motion)
+    for k in range(edges.size - 1):
+        panel, middle = track.filled[0], 0.5 * (edges[k] + edges[k + 1])
+        j = instant_before(setting, motion, middle)
+        rests = motion.modes[j] == 0.0
+        begun = motion.times[j] + of.period * math.floor((middle - motion.times[j]) / of.period)
+        for node in range(NODES.size):
+            t = middle + 0.5 * (edges[k + 1] - edges[k]) * NODES[node]
+            belt, _ = free_slip(around.belt, t)
+            if rests:
+                path, _ = free_slip(around.path, t)
+                before, _ = free_slip(around.path, begun)
+                x = position_at(setting, motion, around, begun, mean)
+                x = x + setting.belt_speed * (t - begun) + (path - before)
+                v, friction = setting.belt_speed + belt, friction_at(setting, motion, j, t - begun)
+            else:
+                x = position_at(setting, motion, around, t, mean)
+                v = locus_slip(setting, motion, t) + (setting.belt_speed + belt)
+                friction = setting.limit * motion.modes[j]
+            track.tau[panel, node] = t
+            track.x[panel, node], track.v[panel, node] = complex(x, 0.0), complex(v, 0.0)
+            track.friction[panel, node] = complex(friction / normal_load, 0.0)
+        track.stick[panel] = rests
+        track.filled[0] = panel + 1
+
+
+@inner
+def instant_before(setting: LocusSetting, motion: Instants, t: float) -> int:
+    """The instant after which a time lies."""
+    period, best, least = setting.response.period, 0, math.inf
+    for j in range(motion.times.size):
+        since = t - motion.times[j]
+        since = since - period * math.floor(since / period)
+        if since < least:
+            best, least = j, since
+    return best
+
+
+@inner
+def friction_at(setting: LocusSetting, motion: Instants, j: int, since: float) -> float:
+    """Friction a while after instant j, at which a rest begins: Clenshaw's sum in xi."""
+    rule, n = setting.rule, setting.rule.nodes.size
+    share = min(max(since / length_of(motion, setting.response.period, j), 0.0), 1.0)
+    x, last, now = 2.0 * share ** (1.0 / rule.grading) - 1.0, 0.0, 0.0
+    for k in range(n - 1, -1, -1):
+        coefficient = 0.0
+        for m in range(n):
+            coefficient = coefficient + rule.to_polynomials[k, m] * motion.friction[j, m]
+        if k == 0:
+            return x * now - last + coefficient
+        last, now = now, 2.0 * x * now - last + coefficient
+    return now
+
+
+@inner
+def position_at(
+    setting: LocusSetting, motion: Instants, around: BesideFriction, t: float, mean: float
+) -> float:
+    """x1 at a time in no rest; mean: of friction."""
+    of, rule = setting.response, setting.rule
+    x, _ = free_slip(around.position, t)
+    x = x - of.static * mean
+    for j in range(motion.times.size):
+        since = t - motion.times[j]
+        if motion.times.size > 1:
+            x = x - jump(motion, setting.limit, j) * integral_at(of, since)
+        if motion.modes[j] == 0.0:
+            length = length_of(motion, of.period, j)
+            for g in range(rule.places.size):
+                x = x - motion.pushes[j, g] * integral_at(of, since - length * rule.places[g])
+    return x

@@ -1,0 +1,212 @@
+"""The relay locus against exact on plain bodies, against motions followed in time, and in its limits."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import outside_memory
+import pytest
+from answered import with_columns
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import sizes
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
+from frictionlab.methods.auto import Auto
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.relay_locus.method import RelayLocus
+from frictionlab.orbit.harmonics import _phasors
+from frictionlab.scene.receptance import linear_body
+from frictionlab.scene.scene import Body, Drive, Fractional, Initial, Relaxation, Scene, Transverse
+from frictionlab.theory import friction_free_velocity
+
+LAW = Coulomb(mu=0.4)
+REFERENCE = Path(__file__).parents[2] / "reference" / "fractional_bodies.csv"
+
+
+def driven(load, frequency, damping, friction, belt_speed=1.0, **more):
+    """P, Omega, b, f of the textbook; mu = 0.4."""
+    drive = Drive(amplitude=load, frequency=frequency)
+    return Scene(
+        damping_ratio=damping, normal_load=friction / 0.4, belt_speed=belt_speed, drive=drive, **more
+    )
+
+
+def answers(method, scene, speeds):
+    """A method's answers along these belt speeds."""
+    scenes = [scene.at(float(speed)) for speed in speeds]
+    assert method.refusal(scene, LAW) is None
+    return with_columns(method, scenes, LAW, 1e-9)
+
+
+@st.composite
+def plain_curves(draw):
+    """A linear body, weak friction and friction above the load, and belts from slow to V_lin."""
+    scene = driven(1.0, draw(sizes(0.25, 6.0)), draw(sizes(0.02, 2.0)), draw(sizes(0.02, 4.0)))
+    shares = draw(st.lists(sizes(1e-3, 1.2), min_size=2, max_size=4))
+    return scene, np.sort(shares) * friction_free_velocity(scene)
+
+
+@settings(max_examples=25)
+@given(plain_curves())
+def test_a_plain_body_has_the_mean_that_exact_finds(curve):
+    scene, speeds = curve
+
+    ours, exact = answers(RelayLocus(), scene, speeds), answers(Exact(), scene, speeds)
+
+    for i in range(len(speeds)):
+        if ours.status[i] == "ok":  # a guess in steps may miss the shortest motions
+            assert ours.mean[i] == pytest.approx(exact.mean[i], abs=1e-12)
+            assert abs(ours.mean[i] - exact.mean[i]) <= ours.error[i] + exact.error[i]
+
+
+def test_all_columns_of_a_plain_body_are_those_of_exact():
+    scene = driven(10.0, 1.0, 0.1, 4.0)
+    speeds = [-20.0, 0.0, 0.3, 5.0, 30.0, 48.0, 49.9, 60.0]
+
+    ours, exact = answers(RelayLocus(), scene, speeds), answers(Exact(), scene, speeds)
+
+    assert ours.status == ["ok"] * len(speeds)
+    for name, values in exact.columns.items():
+        if "error" not in name and name not in ("floquet", "seconds"):
+            np.testing.assert_allclose(ours.columns[name], values, rtol=1e-9, atol=1e-9, err_msg=name)
+
+
+def test_waves_of_belt_and_load_have_the_mean_that_exact_finds():
+    waveform = {"harmonics": [{"order": 1, "amplitude": 1.0}, {"order": 3, "amplitude": 0.5, "phase": 70.0}]}
+    scene = Scene(
+        damping_ratio=0.1,
+        normal_load=2.0,
+        belt_speed=1.0,
+        drive=Drive(amplitude=2.0, frequency=0.7, phase=20.0, waveform=waveform),
+        belt_vibration={"velocity_amplitude": 1.5, "phase": 40.0, "frequency_ratio": 2.0},
+    )
+    speeds = [-3.0, -0.5, 0.0, 0.1, 1.0, 2.0, 4.0, 9.0]
+
+    ours, exact = answers(RelayLocus(), scene, speeds), answers(Exact(), scene, speeds)
+
+    assert ours.status == ["ok"] * len(speeds)
+    np.testing.assert_allclose(ours.mean, exact.mean, atol=1e-12)
+    for name in ("velocity_amplitude", "stick_fraction", "energy_input", "energy_contact"):
+        np.testing.assert_allclose(ours.columns[name], exact.columns[name], rtol=1e-9, atol=1e-9)
+
+
+def test_order_one_is_a_dashpot():
+    scene, speeds = driven(10.0, 1.0, 0.1, 4.0), [0.5, 5.0, 20.0, 24.0]
+
+    ours = answers(
+        RelayLocus(), scene.with_(body=Body(fractional=Fractional(coefficient=0.2, order=1.0))), speeds
+    )
+
+    np.testing.assert_allclose(
+        ours.mean, answers(Exact(), scene.with_(damping_ratio=0.2), speeds).mean, atol=1e-13
+    )
+
+
+@pytest.mark.parametrize("order", [1e-6, 1e-9])
+def test_an_order_near_zero_is_a_spring_to_every_harmonic(order):
+    # With a spring k = 1 + c: times in 1/sqrt(k), forces over k, velocities over sqrt(k), damping ratio over sqrt(k).
+    k, speeds = 1.5, np.array([0.2, 1.0, 3.0])
+    body = Body(fractional=Fractional(coefficient=k - 1.0, order=order))
+    ours = answers(RelayLocus(), driven(2.0, 0.8, 0.1, 0.7, body=body), speeds)
+    root = math.sqrt(k)
+    stiffer = driven(2.0 / k, 0.8 / root, 0.1 / root, 0.7 / k)
+
+    np.testing.assert_allclose(ours.mean, answers(Exact(), stiffer, speeds / root).mean, atol=3.0 * order)
+
+
+@pytest.mark.parametrize("case", outside_memory.CASES)
+def test_a_relaxing_spring_is_the_motion_with_one_state_more(case):
+    frequency, load, limit, belt_speed = case
+    body = outside_memory.Body(0.2, [1.0 / 2.0], [0.5])
+    mean, rested = outside_memory.Scene(body, load, frequency, limit, belt_speed).solved()
+    scene = driven(load, frequency, 0.1, limit, body=Body(relaxation=Relaxation(stiffness=0.5, time=2.0)))
+
+    ours = answers(RelayLocus(), scene, [belt_speed])
+
+    assert ours.mean[0] == pytest.approx(0.4 * mean, abs=1e-12)
+    assert ours.columns["stick_fraction"][0] == pytest.approx(rested, abs=1e-10)
+
+
+def test_a_fractional_body_has_the_mean_of_elements_that_relax():
+    """Reference: ``python tests/outside_memory.py``, 86 elements a body; they are good to about 1e-9."""
+    table = np.genfromtxt(REFERENCE, delimiter=",", names=True)
+    assert len(table) >= 20
+
+    for row in table:
+        scene = driven(
+            row["load"],
+            row["frequency"],
+            0.1,
+            row["limit"],
+            body=Body(fractional=Fractional(coefficient=0.2, order=row["q"])),
+        )
+        ours = answers(RelayLocus(), scene, [row["belt_speed"]])
+
+        assert ours.mean[0] == pytest.approx(0.4 * row["mean"], abs=2e-9)
+        assert ours.columns["stick_fraction"][0] == pytest.approx(row["stick_fraction"], abs=1e-6)
+
+
+def test_what_the_load_gives_goes_to_dashpot_memory_and_friction():
+    """Of memory harmonic by harmonic; of those beyond, the velocities fall with the square of the order."""
+    body = Body(
+        fractional=Fractional(coefficient=0.5, order=0.4),
+        relaxation=Relaxation(stiffness=0.4, time=2.0, order=0.7),
+    )
+    scene = driven(2.0, 1.0, 0.1, 1.5, belt_speed=0.3, body=body)
+    found = answers(RelayLocus(), scene, [0.3])
+    orbit, omega = found.orbit(0), np.arange(1.0, 200.0)
+
+    dashpots = (linear_body(scene).dynamic_stiffness(1j * omega) / (1j * omega)).real
+    lost = math.pi * (dashpots * np.abs(_phasors(orbit.tau, orbit.v.real, omega)) ** 2).sum()
+
+    assert found.columns["stick_fraction"][0] > 0.0
+    assert found.columns["energy_viscous"][0] == pytest.approx(lost, rel=3e-8)
+
+
+def test_velocity_and_friction_obey_the_frequency_response_in_every_harmonic():
+    body = Body(fractional=Fractional(coefficient=0.5, order=0.4))
+    scene = driven(2.0, 0.8, 0.1, 1.5, belt_speed=0.5, body=body)
+    orbit = RelayLocus().solve([scene], LAW, 1e-9).orbit(0)
+    omega = 0.8 * np.arange(1.0, 40.0)
+
+    velocity, friction = (
+        _phasors(orbit.tau, orbit.v.real, omega),
+        _phasors(orbit.tau, orbit.friction.real, omega),
+    )
+
+    force = -scene.normal_load * friction
+    force[0] += 2.0
+    np.testing.assert_allclose(
+        velocity, 1j * omega * linear_body(scene).receptance(omega) * force, atol=1e-11
+    )
+
+
+def test_a_belt_at_rest_that_holds_the_body_leaves_its_place_open():
+    body = Body(fractional=Fractional(coefficient=0.5, order=0.4))
+
+    ours = RelayLocus().solve([driven(1.0, 0.8, 0.1, 1.5, belt_speed=0.0, body=body)], LAW, 1e-9)
+
+    assert ours.status == ["not_unique"]
+    # friction is the load less the spring: it may be off by limit less load either way
+    assert (ours.mean_low[0], ours.mean_high[0]) == pytest.approx((-0.5 / 3.75, 0.5 / 3.75))
+
+
+def test_auto_takes_it_where_a_body_remembers_and_tells_what_it_cannot_do():
+    body = Body(relaxation=Relaxation(stiffness=0.5, time=2.0))
+    scene = driven(10.0, 1.0, 0.1, 4.0, body=body)
+
+    assert Auto().choice(scene, LAW)[0] == RelayLocus()
+    assert Auto().refusal(scene, Dahl(mu=0.4, stiffness=10.0)) == (
+        "on a body with memory only Coulomb friction (without mu_static) is solved, by relay_locus"
+    )
+    across = Transverse(natural_frequency=1.0, damping_ratio=0.1)
+    assert "one line" in Auto().refusal(scene.with_(transverse=across), LAW)
+    assert "drive" in Auto().refusal(scene.with_(drive=None, initial=Initial(x=1.0)), LAW)
+    square = scene.with_(drive=Drive(amplitude=1.0, frequency=1.0, waveform="square"))
+    assert "sines" in Auto().refusal(square, LAW)
+    cubic = scene.with_(body=Body(relaxation=body.relaxation, cubic_stiffness=0.1))
+    assert Auto().refusal(cubic, LAW) == "relay_locus does not take body.cubic_stiffness"

@@ -18,10 +18,10 @@ from frictionlab.theory.piecewise import piecewise
 from frictionlab.theory.prescribed import mean_direction
 from frictionlab.theory.rest import can_hold
 
-KEYS = "waveform", "direction", "frequency_ratio", "belt_vibration", "normal_load_variation"
+KEYS = "waveform", "direction", "frequency_ratio", "body", "belt_vibration", "normal_load_variation"
 LOPSIDED = (
-    "loads, belt and normal load do not repeat mirrored half a period later: the limit of friction at vanishing belt "
-    "speed is not known"
+    "loads, belt, normal load or springs are not mirrored half a period later: the limit of friction at vanishing "
+    "belt speed is not known"
 )
 JUMPS = (
     "friction jumps at the end of reversal, where slip rests for a part of the period: it has no shape there"
@@ -77,7 +77,8 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
 
 def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
     """Whether a curve of this scene has a known mean friction at vanishing belt speed."""
-    if not scene.is_harmonic or scene.belt_vibration is not None or scene.normal_load_variation is not None:
+    varied = scene.belt_vibration is not None or scene.normal_load_variation is not None
+    if not scene.is_harmonic or varied or scene.body_terms:
         return not _start(scene, law)[1]
     holds = law.memory_kind == "none" and scene.degrees_of_freedom > 0 and can_hold(scene, law)
     return not holds or (scene.load_along_belt_only and law.monotone())
@@ -119,7 +120,12 @@ def _direction(scene: Scene) -> float:
 
 
 def repeats_mirrored(scene: Scene) -> bool:
-    """Whether half a period later loads and belt are the opposite of what they were, and the normal load the same."""
+    """Whether half a period later loads and belt are the opposite of what they were, and the normal load the same.
+
+    Never of a spring that is not the same to both sides.
+    """
+    if scene.body is not None and scene.body.curvature:
+        return False
     signals = scene.signals()
     # times without any pattern of their own
     tau = signals.period * np.mod(np.sqrt(2.0) * np.arange(1, 65), 1.0)

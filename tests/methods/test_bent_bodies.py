@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from frictionlab import registry
+from frictionlab.results.loads_in_time import start_is_known
 
 LINE: dict[str, Any] = {
     "damping_ratio": 0.1,
@@ -209,3 +210,22 @@ def test_an_undriven_body_slides_or_sticks_as_its_integration_says(speed: float)
         ]
         side = -side
     assert state.mean_friction == pytest.approx((x + cubic * x**3) / load, abs=1e-8)
+
+
+def test_a_curve_starts_at_zero_unless_its_spring_is_another_to_either_side() -> None:
+    scene = fl.Scene(**LINE)
+    slow = answered(LINE | {"body": {"cubic_stiffness": 0.01}, "belt_speed": 1e-3})
+
+    assert start_is_known(scene.with_(body={"cubic_stiffness": 0.01}), fl.Coulomb(mu=0.4))
+    assert abs(slow.mean_friction) < 1e-4
+    assert not start_is_known(scene.with_(body={"curvature": 0.004}), fl.Coulomb(mu=0.4))
+    assert abs(answered(LINE | {"body": {"curvature": 0.004}, "belt_speed": 1e-3}).mean_friction) > 1e-3
+
+
+def test_needs_takes_the_terms_of_a_body_away() -> None:
+    scene = fl.Scene(**LINE, body={"cubic_stiffness": 0.01, "amplitude_damping": 1e-7})
+    needs = fl.needs(scene, fl.Coulomb(mu=0.4), within=1e-3)
+
+    told = needs.table.set_index("without")["verdict"]
+    assert told["cubic stiffness"] == "needed"
+    assert told["amplitude damping"] == "not needed"

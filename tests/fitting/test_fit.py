@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from maxwell_slip import MaxwellSlip
+from rate_and_state import RateAndState
 
 import frictionlab as fl
 from frictionlab import cli
@@ -205,6 +207,29 @@ def test_missing_samples_of_a_path_are_left_out_and_told() -> None:
     assert len(found.measured.pieces) == 2
     assert found.values["mu"] == pytest.approx(0.4, abs=1e-6)
     assert "10 samples are missing and were left out" in found.sentences
+
+
+def test_numbers_of_a_list_are_found_one_by_one() -> None:
+    data = path_of(4.0, 0.3)
+    data["friction"] = data["friction"] + path_of(1.0, 0.2)["friction"]
+    law = MaxwellSlip(mu=(0.2, 0.1), stiffness=(3.0, 0.5))
+    true = {"mu[0]": 0.3, "mu[1]": 0.2, "stiffness[0]": 4.0, "stiffness[1]": 1.0}
+    found = fl.fit(data, law, free={name: (0.5 * x, 1.8 * x) for name, x in true.items()}, starts=4)
+    assert found.values == pytest.approx(true, rel=1e-5)
+    assert isinstance(found.law, MaxwellSlip)
+    assert found.law.mu == pytest.approx((0.3, 0.2), rel=1e-5)
+
+
+def test_a_step_of_speed_tells_the_numbers_of_rate_and_state() -> None:
+    """After the step the age is D/v2 + (D/v1 - D/v2) exp(-slip/D): Dieterich's ageing law at constant speed."""
+    times = np.linspace(-10.0, 10.0, 401)
+    speeds, slips = np.where(times > 0.0, 10.0, 3.0), np.where(times > 0.0, 10.0, 3.0) * times
+    age = 8.0 * (1.0 / speeds + np.where(times > 0.0, (1.0 / 3.0 - 0.1) * np.exp(-slips / 8.0), 0.0))
+    friction = 0.6 + 0.008 * np.log(speeds / 3.0) + 0.011 * np.log(3.0 * age / 8.0)
+    law = RateAndState(mu=0.5, a=0.01, b=0.01, slip_length=3.0, reference_speed=3.0)
+    free = {"mu": (0.4, 0.8), "a": (0.001, 0.05), "b": (0.001, 0.05), "slip_length": (1.0, 40.0)}
+    found = fl.fit({"time": times, "slip": slips, "friction": friction}, law, free=free, starts=2)
+    assert found.values == pytest.approx({"mu": 0.6, "a": 0.008, "b": 0.011, "slip_length": 8.0}, rel=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from profiles import deep
 from resonance import at_resonance as scene
+from resonance import bristles_of
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
@@ -50,16 +51,6 @@ def rows_of(kind, planar):
     return rows[5::11][:3] if planar else rows[3::23]
 
 
-def law_of(row):
-    """The law of a reference row."""
-    length = float(row["z_ss"])
-    if row["law"] == "dahl":
-        return Dahl(mu=0.4, presliding_length=length)
-    if row["law"] == "lugre":
-        return LuGre(mu_kinetic=0.4, presliding_length=length, contact_damping=math.sqrt(float(row["s"])))
-    return ElastoPlastic(mu_kinetic=0.4, presliding_length=length)
-
-
 def scene_of(row):
     """The scene of a reference row."""
     across = None
@@ -93,7 +84,7 @@ def solve(one, law, tolerance=1e-5, **keys):
 )
 def test_the_error_covers_the_reference(kind, stepper, planar):
     for row in rows_of(kind, planar):
-        answers = solve(scene_of(row), law_of(row), stepper=stepper)
+        answers = solve(scene_of(row), bristles_of(row), stepper=stepper)
         assert answers.status == ["ok"]
         error = answers.columns["error"][0]
         assert error <= 1e-5
@@ -103,7 +94,7 @@ def test_the_error_covers_the_reference(kind, stepper, planar):
 def test_given_steps_tell_their_error():
     row = rows_of("lugre", False)[0]
     for stepper, steps in (("exponential", 200), ("sdirk2", 100), ("rk4", 1000)):
-        answers = solve(scene_of(row), law_of(row), stepper=stepper, steps=steps)
+        answers = solve(scene_of(row), bristles_of(row), stepper=stepper, steps=steps)
         off = abs(answers.columns["mean_friction"][0] - float(row["mu_bar"]))
         assert f"{stepper}: {steps} steps per period" in answers.model[0]
         assert off <= answers.columns["error"][0] + KNOWN

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from answered import with_columns
 from resonance import at_resonance as scene
+from resonance import bristles_of
 
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
@@ -116,22 +117,12 @@ def test_on_a_belt_at_rest_the_amplitude_is_that_of_the_closed_forms(
     assert abs(found.columns["mean_friction"][0]) <= found.columns["error"][0] < 1e-8
 
 
-def law_of(row):
-    """The law of a row of the reference of masses on dynamic laws."""
-    presliding, stiffness, load = (float(row[name]) for name in ("z_ss", "s", "gamma2"))
-    if row["law"] == "dahl":
-        return dahl(presliding)
-    if row["law"] == "lugre":
-        return LuGre(mu_kinetic=MU, presliding_length=presliding, damping=math.sqrt(stiffness) / load)
-    return ElastoPlastic(mu_kinetic=MU, presliding_length=presliding)
-
-
 def test_the_error_covers_the_reference_of_masses_on_dynamic_laws() -> None:
     line = [row for row in rows("dynamic_laws_system.csv") if row["omega_r"] == "none"]
     ratios = []
     for row in line[::7]:
         one = scene(float(row["v_b"]), float(row["Omega"]), normal_load=float(row["gamma2"]))
-        found = solve(one, law_of(row))
+        found = solve(one, bristles_of(row))
         true = abs(found.columns["mean_friction"][0] - float(row["mu_bar"]))
 
         assert found.status == ["ok"]

@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from answered import with_columns
 from profiles import deep
+from resonance import bristles_of
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
@@ -30,21 +31,6 @@ def scenes(belt_speeds: np.ndarray, normal_load: float = 10.0, frequency: float 
     ]
 
 
-def law_of(row: pd.Series) -> BristleLaw:
-    """The law of a row of ``bristle_*.csv``."""
-    length = row["presliding_length"]
-    if row["kind"] == "dahl":
-        return fl.Dahl(mu=0.4, presliding_length=length)
-    mu = {"mu_kinetic": row.get("mu_kinetic", 0.4)} | (
-        {"mu_static": row["mu_static"], "stribeck_speed": row["stribeck_speed"]}
-        if row["kind"] == "lugre" and "mu_static" in row
-        else {}
-    )
-    if row["kind"] == "lugre":
-        return fl.LuGre(**mu, presliding_length=length, damping=row["damping"])
-    return fl.ElastoPlastic(**mu, presliding_length=length)
-
-
 def compared(answers: Answers, expected: np.ndarray, accuracy: np.ndarray | float, tolerance: float) -> None:
     """Every answer is there, within its error, and its error within the tolerance."""
     assert set(answers.status) == {"ok"}
@@ -57,7 +43,7 @@ def compared(answers: Answers, expected: np.ndarray, accuracy: np.ndarray | floa
 @pytest.mark.parametrize("workload", ["W4a", "W4b", "W4c", "W4d"])
 def test_stiff_bristles_are_true_to_the_reference_at_every_tolerance(workload: str, tolerance: float) -> None:
     rows = W4[W4["workload"] == workload].sort_values("belt_speed")
-    answers = with_columns(Shooting(), scenes(rows["belt_speed"]), law_of(rows.iloc[0]), tolerance)
+    answers = with_columns(Shooting(), scenes(rows["belt_speed"]), bristles_of(rows.iloc[0]), tolerance)
     compared(answers, rows["mean_friction"].to_numpy(), rows["accuracy"].to_numpy(), tolerance)
 
 
@@ -66,7 +52,7 @@ def test_falling_and_elasto_plastic_bristles_are_true_to_the_reference() -> None
     keys = ["kind", "mu_kinetic", "mu_static", "stribeck_speed", "presliding_length", "damping"]
     for _, curve in rows.groupby(keys, dropna=False):
         curve = curve.sort_values("belt_speed")
-        law = law_of(curve.iloc[0])
+        law = bristles_of(curve.iloc[0])
         if isinstance(law, fl.LuGre) and law.stribeck_speed == 1.0:
             curve = curve.iloc[-1:]  # falls too fast for one start to do: every point asks four
         answers = with_columns(Shooting(), scenes(curve["belt_speed"]), law, 1e-8)

@@ -9,9 +9,9 @@ import pandas as pd
 import pytest
 from answered import with_columns
 from profiles import DEEP, deep
+from resonance import bristles_of
 
 import frictionlab as fl
-from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.shooting.method import Shooting
 
 REFERENCE = Path(__file__).parents[2] / "reference"
@@ -29,21 +29,6 @@ def scenes(belt_speeds: np.ndarray, omega_r: float, across: float = 10.0) -> lis
     ]
 
 
-def law_of(row: pd.Series) -> BristleLaw:
-    length = row["presliding_length"]
-    if row["kind"] == "dahl":
-        return fl.Dahl(mu=row["mu_kinetic"], presliding_length=length)
-    if row["kind"] == "lugre":
-        return fl.LuGre(
-            mu_kinetic=row["mu_kinetic"],
-            mu_static=row["mu_static"],
-            stribeck_speed=row["stribeck_speed"],
-            presliding_length=length,
-            damping=row["damping"],
-        )
-    return fl.ElastoPlastic(mu_kinetic=row["mu_kinetic"], presliding_length=length)
-
-
 @pytest.mark.parametrize("kind", ["dahl", "lugre", "dupont"])
 def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
     if kind != "dupont" and not DEEP:
@@ -53,7 +38,7 @@ def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
     for (omega_r, _length), curve in rows.groupby(["omega_r", "presliding_length"]):
         curve = curve.sort_values("belt_speed")
         answers = with_columns(
-            Shooting(), scenes(curve["belt_speed"], float(omega_r)), law_of(curve.iloc[0]), 1e-6
+            Shooting(), scenes(curve["belt_speed"], float(omega_r)), bristles_of(curve.iloc[0]), 1e-6
         )
         assert set(answers.status) == {"ok"}
         error = answers.columns["error"]

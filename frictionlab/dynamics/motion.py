@@ -559,13 +559,18 @@ def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
         if side * (restoring_force(body, side * high, v).real - force) >= 0.0:
             break
         low, high = high, 1.25 * high + 1e-300
+    x = high
     for _ in range(100):
-        middle = 0.5 * (low + high)
-        if side * (restoring_force(body, side * middle, v).real - force) >= 0.0:
-            high = middle
-        else:
-            low = middle
-    return side * high
+        beyond = side * (restoring_force(body, side * x, v).real - force)
+        low, high = (low, x) if beyond >= 0.0 else (x, high)
+        slopes = slopes_at(body, side * x, v)
+        slope = slopes.stiffness_mean + slopes.stiffness_split
+        trial = x - beyond / slope if slope > 0.0 else low
+        trial = trial if low < trial < high else 0.5 * (low + high)
+        if abs(trial - x) <= 2e-16 * x:
+            break
+        x = trial
+    return side * x
 
 
 def _linear_equilibrium(body: BodyNumbers, force: float, v: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,16 +46,29 @@ class Mass(NamedTuple):
 
 def one_harmonic_motions(mass: Mass, rub: float = 0.0) -> list[complex]:
     """Phasors of x1 that balance the load by one harmonic, of a body that bends; rub: a force against velocity."""
-    bends, omega, load = mass.bends, mass.frequency, abs(mass.force)
+    return list(_balanced(mass.bends[:4], mass.damping, mass.stiffness, mass.frequency, mass.force, rub))
+
+
+@lru_cache(maxsize=64)  # the belt speeds of a curve share them
+def _balanced(
+    bends: tuple[float, float, float, float],
+    damping: float,
+    stiffness: float,
+    omega: float,
+    force: complex,
+    rub: float,
+) -> tuple[complex, ...]:
+    spring_2, spring_3, _, dashpot_2 = bends
+    load = abs(force)
     if load == 0.0:
-        return []
+        return ()
     # an even spring softens by the shift of the mean that it brings
-    cubic = 0.75 * bends.spring_3 - (5.0 / 6.0) * bends.spring_2**2 / mass.stiffness
-    amplitudes = load / max(mass.stiffness, omega**2) * np.geomspace(1e-3, 1e3, 3001)
-    damping = omega * (mass.damping + 0.25 * bends.dashpot_2 * amplitudes**2) + rub / amplitudes
-    dynamic = mass.stiffness + cubic * amplitudes**2 - omega**2 + 1j * damping
+    cubic = 0.75 * spring_3 - (5.0 / 6.0) * spring_2**2 / stiffness
+    amplitudes = load / max(stiffness, omega**2) * np.geomspace(1e-3, 1e3, 3001)
+    damped = omega * (damping + 0.25 * dashpot_2 * amplitudes**2) + rub / amplitudes
+    dynamic = stiffness + cubic * amplitudes**2 - omega**2 + 1j * damped
     missing = amplitudes * np.abs(dynamic) - load
-    return [complex(mass.force / dynamic[i]) for i in np.flatnonzero(missing[:-1] * missing[1:] < 0.0)]
+    return tuple(complex(force / dynamic[i]) for i in np.flatnonzero(missing[:-1] * missing[1:] < 0.0))
 
 
 def with_free_motion(mass: Mass) -> Mass:

@@ -20,7 +20,10 @@ None of this holds for springs and dashpots that are not linear: a Duffing oscil
 
 from __future__ import annotations
 
+import math
+
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
 
@@ -59,10 +62,30 @@ def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
 
     Never on a body that is not linear, whose motions may part whatever the friction.
     """
-    if scene.body_terms:
-        return False
+    return not scene.body_terms and falls_slower_than_dashpots(scene, law)
+
+
+def falls_slower_than_dashpots(scene: Scene, law: FrictionLaw) -> bool:
+    """The same, whatever the springs."""
     fall = law.steepest_fall()
     return fall == 0.0 or largest_normal_load(scene) * fall < _damping(scene)
+
+
+def resonates_once(scene: Scene) -> bool:
+    """Whether a body that is not linear has but one motion without friction by one harmonic, and no other resonance.
+
+    Of a spring that hardens alike to both sides, under a sine: twice its frequency is above every natural frequency
+    that the spring has within reach of the load, and half of it below. No theorem: few starts are then tried.
+    """
+    mass = scene.mass()
+    if not mass.bends or not scene.is_harmonic or not scene.load_along_belt_only:
+        return False
+    alike = mass.bends.spring_2 == 0.0 == mass.bends.dashpot_1 and mass.bends.spring_3 >= 0.0
+    motions = one_harmonic_motions(mass)
+    if not alike or len(motions) != 1:
+        return False
+    stiffest = mass.stiffness + 0.75 * mass.bends.spring_3 * abs(motions[0]) ** 2
+    return 0.5 * mass.frequency < math.sqrt(mass.stiffness) and stiffest < (2.0 * mass.frequency) ** 2
 
 
 def largest_normal_load(scene: Scene) -> float:

@@ -229,3 +229,11 @@ def test_needs_takes_the_terms_of_a_body_away() -> None:
     told = needs.table.set_index("without")["verdict"]
     assert told["cubic stiffness"] == "needed"
     assert told["amplitude damping"] == "not needed"
+
+
+def test_few_starts_are_tried_where_the_spring_resonates_once() -> None:
+    once = answered(LINE | {"body": {"cubic_stiffness": 0.01}})
+    often = answered(LINE | {"body": {"cubic_stiffness": 0.01}, "drive": {"unbalance": 1, "frequency": 3.5}})
+
+    assert once.reason.startswith("tested: 2 starts ")
+    assert not often.reason.startswith("tested: 2 starts ")

@@ -109,10 +109,7 @@ def reached(setting: Setting, state: Any, matrix: Any, constant: bool) -> int:
 
     One is a mass set off at rest on the belt, one slides as if slip never reversed: an orbit of its own where the
     belt is faster than any vibration and sliding friction constant. matrix: the monodromy, NaN where it is not known.
-    0 of laws without memory: where it is not sure that all motions end there, starts are followed to their ends.
     """
-    if not setting.maps.remembers:
-        return 0
     orbit = KnownOrbit(state, matrix, 1.0 - radius_bound(matrix))
     # Set off at rest on the belt, where the contact remembers nothing.
     start = np.empty(state.size)

@@ -53,7 +53,12 @@ from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory.saturation import slides_saturated
-from frictionlab.theory.uniqueness import falls_slowly, is_convergent
+from frictionlab.theory.uniqueness import (
+    falls_slower_than_dashpots,
+    falls_slowly,
+    is_convergent,
+    resonates_once,
+)
 
 
 def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
@@ -106,6 +111,8 @@ class PeriodicProblem:
         self.kernel: Any = answer_curve
         self.falls_slowly = falls_slowly(scene, law)
         check_attraction = law.count() > 0 and self.falls_slowly
+        if self.mass.bends and falls_slower_than_dashpots(scene, law):
+            check_attraction = resonates_once(scene)
         self.body: BodyNumbers
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):

@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from typing import Protocol
 
@@ -75,16 +76,16 @@ class Attractor:
         """Whether both have the same mean friction, for the same reason."""
         if self.curve is None or other.curve is None or self.period != other.period:
             return self.average is not None and self.average is other.average
-        doubt = float(self.curve.closed.error[0] + other.curve.closed.error[0])
+        doubt = self.error + other.error
         return abs(self.mean - other.mean) <= doubt + 1e-12
 
-    @property
+    @cached_property
     def known(self) -> KnownOrbit:
         """As kernels see it."""
         assert self.curve is not None
         return KnownOrbit(self.curve.states[0], self.curve.matrices[0], 1.0 - multiplier(self.curve))
 
-    @property
+    @cached_property
     def mean(self) -> float:
         """The mean friction over all periods of a closed orbit, or over a long time; NaN where that is not known."""
         if self.curve is not None:
@@ -96,7 +97,7 @@ class Attractor:
         """Periods that the mean is taken over; 1 where only the range of one-period means is known."""
         return self.period or (1 if self.average is None else self.followed)
 
-    @property
+    @cached_property
     def error(self) -> float:
         """That of the mean; of one over a long time two standard errors."""
         if self.curve is not None:

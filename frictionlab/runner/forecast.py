@@ -62,29 +62,29 @@ class Forecast:
         return sum(int(now.points) for key, now in list(under_way.items()) if key in self._sent)
 
     def seconds_left(self) -> float:
-        """Until all points are solved; NaN as long as nothing is known."""
+        """Until all points are solved; NaN as long as of a kind that is left nothing is known."""
         running = [(self._sent[key], now) for key, now in list(under_way.items()) if key in self._sent]
         waiting, solved, seconds = self._left.copy(), self._solved.copy(), self._seconds.copy()
         for work, now in running:
             waiting[work.kind] -= len(work.left)
             solved[work.kind] += now.points
             seconds[work.kind] += now.seconds
-        if not any(solved.values()):
+        rate = {kind: seconds[kind] / count for kind, count in solved.items() if count}
+        to_come = {kind for kind, count in waiting.items() if count > 0} | {work.kind for work, _ in running}
+        if not rate or to_come - rate.keys():
             return math.nan
-        usual = sum(seconds.values()) / sum(solved.values())
-        rate = {kind: seconds[kind] / solved[kind] if solved[kind] else usual for kind in waiting}
         clock, rests = time.perf_counter(), [0.0]
         for work, now in running:
             silent_for = clock - now.told_at
             known = (len(work.left) - now.points) * rate[work.kind] - silent_for
             rests.append(max(known, GOES_ON * silent_for))
-        total = sum(rests) + sum(count * rate[kind] for kind, count in waiting.items() if count > 0)
+        total = sum(rests) + sum(waiting[kind] * rate[kind] for kind in to_come if waiting[kind] > 0)
         passed = time.monotonic() - self._begun
         at_once = len(running) or max(1.0, self._back / passed if passed > 0.0 else 1.0)
         return max(total / at_once, *rests)
 
     def learn_from_samples(self, curves: Sequence[StudyCurve], task: Task) -> None:
-        """Once it is time, solve points of the kinds not begun yet, on a thread of its own."""
+        """Once it is time, solve points of the kinds of which nothing is known yet, on a thread of its own."""
         if self._learns or time.monotonic() - self._begun < LEARNS_AFTER:
             return
         self._learns = True
@@ -92,15 +92,18 @@ class Forecast:
 
         def learn() -> None:
             with suppress(BrokenPlugin):  # the run itself tells of it
-                while (unknown := self._not_begun()) and not self.is_over:
+                while (unknown := self._unknown()) and not self.is_over:
                     chosen = [each for each in curves if each.labels in unknown]
                     for kind, price in prices(chosen, task, most=MOST_LEARNING).items():
                         self.learn(kind, price.measured, price.spent)
                     time.sleep(LEARNS_AFTER)  # kernels may have been compiled by then
 
-        if self._not_begun():
+        if self._unknown():
             Thread(target=learn, daemon=True).start()
 
-    def _not_begun(self) -> set[PointKind]:
-        begun = {work.kind for key, work in list(self._sent.items()) if key in under_way}
-        return {kind for kind, count in self._left.items() if count > 0 and not self._solved[kind]} - begun
+    def _unknown(self) -> set[PointKind]:
+        """Kinds of which no point is solved, nor told of by a chunk under way."""
+        told = {
+            self._sent[key].kind for key, now in list(under_way.items()) if key in self._sent and now.points
+        }
+        return {kind for kind, count in self._left.items() if count > 0 and not self._solved[kind]} - told

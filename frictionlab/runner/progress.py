@@ -56,10 +56,11 @@ class Meter:
         """The next stage of the run, and what is counted in it."""
         self._doing, self._things = doing, things
         self._done = self._total = self._at_first = 0
-        self._working, self._last, self._left = 0.0, time.monotonic(), math.nan
+        self._working, self._last = 0.0, time.monotonic()
+        self._left: float | None = None
 
-    def __call__(self, done: int, total: int, left: float = math.nan) -> None:
-        """Tell how far the stage is, if it is time to; left: seconds, by the count of things where not known."""
+    def __call__(self, done: int, total: int, left: float | None = None) -> None:
+        """Tell how far the stage is, if it is time to; left: seconds, NaN where not known, None by the count."""
         self._left = left
         self._at_first = self._at_first if self._total else done
         self._done, self._total = done, total
@@ -80,7 +81,7 @@ class Meter:
         count = f": {self._done} of {self._total} {self._things}" if self._total else ""
         new = self._done - self._at_first  # kernels are compiled once: that is not held against the points
         left = self._working / new * (self._total - self._done) if new else 0.0
-        left = left if math.isnan(self._left) else self._left
+        left = left if self._left is None else self._left
         # how long kernels take to compile is not known
         facts = [f"compiling {kernel}", self._doing + count] if kernel else [self._doing + count]
         facts += [f"about {spoken(left)} left"] if left > 0.5 and not kernel else []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -112,3 +113,13 @@ def test_the_time_left_is_within_a_factor_of_three_from_a_tenth_on(
     for since, left in told:
         if 0.1 * now[0] < since < 0.9 * now[0]:
             assert (now[0] - since) / 3.0 < left < 3.0 * (now[0] - since), (since, now[0])
+
+
+def test_no_time_is_told_while_a_kind_that_is_left_is_unknown() -> None:
+    forecast = Forecast([(("quick", ""), 240), (("slow", ""), 240)])
+    forecast.learn(("quick", ""), 100, 1.0)
+    before = forecast.seconds_left()
+    forecast.learn(("slow", ""), 2, 2.0)
+
+    assert math.isnan(before)
+    assert forecast.seconds_left() == pytest.approx(240 * 0.01 + 240 * 1.0)

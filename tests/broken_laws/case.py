@@ -6,6 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.testing import CHECKS
+
+OF_PYTHON = [each.name for each in CHECKS if each.patience == 1.0]
+OF_EVERY_LAW = OF_PYTHON[OF_PYTHON.index("oddness") :]
+"""Checks that ``laws/test_laws.py`` puts every law of frictionlab to."""
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from broken_laws.case import OF_EVERY_LAW
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from strategies import BRISTLE_LAWS, EXAMPLES, LAWS, velocities, velocities_on_the_line
@@ -17,7 +18,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.registry import law_class, law_names
-from frictionlab.testing import CHECKS, check_law
+from frictionlab.testing import check_law
 
 every_law = pytest.mark.parametrize("name", LAWS)
 
@@ -50,8 +51,7 @@ def test_the_registered_name_is_the_name_of_the_class_and_of_its_file(name):
 @every_law
 def test_the_law_conforms(name):
     """Symmetry, units and all that it declares: what the battery asks of any law in Python."""
-    quick = [each.name for each in CHECKS if each.patience == 1.0]
-    check_law(law_class(name), only=quick[quick.index("oddness") :], examples=10)
+    check_law(law_class(name), only=OF_EVERY_LAW, examples=12)
 
 
 @pytest.mark.parametrize("name", [name for name in LAWS if name not in BRISTLE_LAWS])

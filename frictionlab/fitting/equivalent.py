@@ -127,6 +127,10 @@ def _nearest(
 ) -> Equivalent:
     if belt_speed is None:
         end = USUAL_END * float(friction_free_velocity(scene))
+        if not math.isfinite(end):
+            raise ValueError(
+                "belt_speed: give the belt speeds of the curve: this scene has no V_lin to choose them by"
+            )
         speeds = np.linspace(end / USUAL_POINTS, end, USUAL_POINTS)
     else:
         speeds = np.unique(given_speeds(belt_speed))

@@ -23,6 +23,7 @@ from frictionlab.theory.linear import friction_free_response, friction_free_velo
 from frictionlab.theory.piecewise import Piecewise, piecewise
 
 UNDRIVEN = "nothing shakes the body: without friction it does not move"
+BENT_MOTION = "the friction-free motion of a body that is not linear has no closed form"
 UNBOUNDED_MOTION = "the friction-free motion is unbounded: undamped resonance"
 WITH_SPEED = "the friction that moves the body under this normal load changes with belt speed"
 NO_WAVEFORM = "the friction-free motion is no sum of harmonics: no waveform of a prescribed slip says so"
@@ -76,6 +77,8 @@ def _method(name: str, **parameters: Any) -> MotionWay:
 def _prescribed(model: LesserModel) -> Scene:
     """The scene of the friction-free motion as a prescribed slip. Raises CannotGo."""
     scene, law = model.scene, model.law
+    if scene.body_terms:
+        raise CannotGo(BENT_MOTION)
     normal = scene.normal_load_variation
     if normal is not None and not law.constant_sliding_friction():
         raise CannotGo(WITH_SPEED)

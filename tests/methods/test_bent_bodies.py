@@ -229,6 +229,20 @@ def test_needs_takes_the_terms_of_a_body_away() -> None:
     told = needs.table.set_index("without")["verdict"]
     assert told["cubic stiffness"] == "needed"
     assert told["amplitude damping"] == "not needed"
+    assert told["friction's effect on the motion"] == "refused"
+
+
+def test_the_mean_changes_with_the_numbers_of_the_body_as_quotients_say() -> None:
+    scene, law = fl.Scene(**LINE, body=BENT), fl.Coulomb(mu=0.4)
+    found = fl.sensitivities(scene, law, [f"scene.body.{name}" for name in BENT]).derivative.tolist()
+    for derivative, (name, value) in zip(found, BENT.items(), strict=True):
+        low, high = (
+            fl.steady_state(
+                scene.with_(**{f"body.{name}": share * value}), law, tolerance=1e-11
+            ).mean_friction
+            for share in (0.999, 1.001)
+        )
+        assert derivative == pytest.approx((high - low) / (0.002 * value), rel=1e-3), name
 
 
 def test_few_starts_are_tried_where_the_spring_resonates_once() -> None:

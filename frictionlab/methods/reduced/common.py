@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, ReducedModel, Status
+from frictionlab.methods.base import Answers, ReducedModel, Status, beyond_linear
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.refusals import suggest_shooting
@@ -164,6 +164,8 @@ def steadied(scene: Scene) -> Scene | None:
 
 def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
     """Why a reduced model of Coulomb friction along the belt cannot do this scene and law at any belt speed."""
+    if reason := beyond_linear(name, scene):
+        return reason
     if scene.undriven:
         return f"{name} needs a drive: it starts from the driven motion"
     if not scene.load_along_belt_only:

@@ -28,7 +28,7 @@ BY_ALL = re.compile(
     r"(?:^|,\s+)ValueError or TypeError for what\s+makes no\s+sense(?:, BrokenPlugin)?(?=\.$)"
 )
 """What every function raises, which the page says once."""
-LONGEST_OF_MEMBERS = 3
+LONGEST_OF_MEMBERS = 2
 """Lines: a longer example of a method or property has a setting of its own, which its class shows."""
 MADE_BY_OTHERS = {"SteadyState", "Run", "Comparison", "Needs", "Study", "FittedLaws"} | {
     "Equivalent",

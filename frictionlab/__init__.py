@@ -50,6 +50,7 @@ _HOMES = {
     "NormalLoadVariation": "frictionlab.scene.scene",
     "PerSpeed": "frictionlab.laws.base",
     "Positive": "frictionlab.laws.base",
+    "Receptance": "frictionlab.scene.scene",
     "Relaxation": "frictionlab.scene.scene",
     "Scene": "frictionlab.scene.scene",
     "Shooting": "frictionlab.methods.shooting.method",

@@ -428,6 +428,7 @@ _NAMES = {  # words, symbol, unit
     "scene.body.relaxation.stiffness": ("relaxing stiffness", "k_m"),
     "scene.body.relaxation.time": ("relaxation time", r"\tau_m"),
     "scene.body.relaxation.order": ("order of relaxation", "q"),
+    "scene.body.receptance.free_mass": ("free mass", r"m_\infty"),
     "scene.body.fractional.coefficient": ("fractional coefficient", "c_q"),
     "scene.body.fractional.order": ("fractional order", "q"),
     "scene.slip.velocity_amplitude": ("slip velocity amplitude", "V_1"),

@@ -106,13 +106,14 @@ class _Shaken(PartInSI):
 def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI, **inside: Any) -> Any:
     """The SI form of a part that has no keys of its own in SI units, but for those of its base.
 
-    inside: the SI forms of the parts inside it.
+    inside: the SI forms of the parts inside it; None of one that has none.
     """
-    kinds = get_type_hints(part, include_extras=True) | {name: kind | None for name, kind in inside.items()}
+    kinds = get_type_hints(part, include_extras=True)
+    kinds |= {name: kind | None for name, kind in inside.items() if kind is not None}
     fields: dict[str, Any] = {
         key: (kinds[name], ... if field.is_required() else field.default)
         for name, field in part.model_fields.items()
-        if (key := key_in_si(part, name)) not in base.model_fields
+        if (key := key_in_si(part, name)) not in base.model_fields and inside.get(name, part) is not None
     }
     name = f"Dimensional{part.__name__}"
     said = _documented(part, name, example)
@@ -176,6 +177,7 @@ else:
         "cubic_stiffness_N_per_m3=5000",
         relaxation=DimensionalRelaxation,
         fractional=DimensionalFractional,
+        receptance=None,
     )
     DimensionalInitial = _in_si(Initial, "x_m=0.001")
     DimensionalSlip = _in_si(Slip, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken)

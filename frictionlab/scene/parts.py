@@ -10,10 +10,11 @@ import cmath
 import math
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, Record
 from frictionlab.scene.body import Bends
+from frictionlab.scene.receptance_table import TabulatedBody, read_receptance
 from frictionlab.scene.units import (
     CUBIC_DAMPING,
     CUBIC_STIFFNESS,
@@ -176,7 +177,38 @@ class Fractional(ScenePart):
 
 BENDING = "cubic_stiffness", "amplitude_damping", "curvature"
 REMEMBERING = "relaxation", "fractional"
-"""Keys of ``body`` that make it nonlinear, and that make it remember."""
+BY_TABLE = "receptance"
+"""Keys of ``body`` that make it nonlinear, that make it remember, and that stands for all of it."""
+
+
+class Receptance(ScenePart):
+    """What a linear body answers, measured or computed by others, in place of its mass, spring and dashpot.
+
+    file: a CSV file with columns frequency [omega_1], real and imaginary [1/K_1] of x1 over force, from frequency 0.
+    free_mass [K_1/omega_1^2], > 0: above the last frequency x1 over force is -1/(free_mass frequency^2).
+    digest: found where it is left out, of what the file says; a file that says something else is then refused.
+
+    >>> import frictionlab as fl
+    >>> fl.Receptance(file="no_such_file.csv")
+    Traceback (most recent call last):
+    frictionlab.mistakes.notes.WrongValues: Receptance: there is no file no_such_file.csv
+    """
+
+    file: str
+    free_mass: Positive | None = None
+    digest: str = ""
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        found = self.body().digest
+        if self.digest and self.digest != found:
+            raise ValueError(f"{self.file} has changed since: leave digest out to take it as it is")
+        object.__setattr__(self, "digest", found)
+        return self
+
+    def body(self) -> TabulatedBody:
+        """The body of the file."""
+        return read_receptance(self.file, self.free_mass)
 
 
 class Body(ScenePart):
@@ -188,6 +220,7 @@ class Body(ScenePart):
     x1 + 3 r x1^2 + 2 r^2 x1^3 + 2 damping_ratio (1 + 2 r x1)^2 x1' (Amabili, 2018).
     relaxation: a spring in series with a dashpot, the standard linear solid; none where left out.
     fractional: a force between those of a spring and a dashpot; none where left out.
+    receptance: instead of mass, spring, damping_ratio and all of the above, a CSV file or {file, free_mass}.
 
     >>> import frictionlab as fl
     >>> fl.Body(cubic_stiffness=0.01, amplitude_damping=0.02)
@@ -199,6 +232,12 @@ class Body(ScenePart):
     curvature: Annotated[Finite, CURVATURE] = 0.0
     relaxation: Relaxation | None = None
     fractional: Fractional | None = None
+    receptance: Receptance | None = None
+
+    @field_validator("receptance", mode="before")
+    @classmethod
+    def _file_alone(cls, given: Any) -> Any:
+        return {"file": given} if isinstance(given, str) else given
 
     def bends(self, damping_ratio: float) -> Any:
         """What it adds to the force of spring and dashpot; empty where that is nothing."""

@@ -21,8 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.quantities import Floats
-from frictionlab.scene.parts import Body, Fractional, Relaxation
-from frictionlab.scene.scene import Scene
 
 ComplexValues = NDArray[Any]
 
@@ -32,11 +30,14 @@ class LinearBody(Protocol):
 
     mass, damping: of its response to high frequencies, 1/(mass p^2 + damping p + ...). known_to: frequency above
     which ``beyond`` is the response, analytic in p where Re(p/i) is at least that. fastest: frequency above which it
-    does not swing by itself. smooth: whether its answer to a jump of force is analytic just after the jump.
-    """
+    does not swing by itself. detail: frequency up to which its response in time has details. smooth: whether its
+    answer to a jump of force is analytic just after the jump. dissipates: at every frequency."""
 
-    mass: float
-    damping: float
+    @property
+    def mass(self) -> float: ...
+
+    @property
+    def damping(self) -> float: ...
 
     @property
     def known_to(self) -> float: ...
@@ -46,6 +47,14 @@ class LinearBody(Protocol):
 
     @property
     def smooth(self) -> bool: ...
+
+    @property
+    def dissipates(self) -> bool: ...
+
+    @property
+    def detail(self) -> float: ...
+
+    def __hash__(self) -> int: ...
 
     def receptance(self, omega: Floats) -> ComplexValues:
         """x1 over force at these circular frequencies >= 0."""
@@ -62,8 +71,8 @@ class RememberingBody:
 
     damping: float
     stiffness: float = 1.0
-    relaxation: Relaxation | None = None
-    fractional: Fractional | None = None
+    relaxation: Any = None
+    fractional: Any = None
     mass: float = 1.0
 
     @property
@@ -82,6 +91,11 @@ class RememberingBody:
     def fastest(self) -> float:
         """That of all springs together, hardened by the fractional element."""
         return self.known_to / 2.0
+
+    @property
+    def detail(self) -> float:
+        """The same."""
+        return self.fastest
 
     @property
     def smooth(self) -> bool:
@@ -116,8 +130,11 @@ class RememberingBody:
         return 1.0 / self.dynamic_stiffness(p)
 
 
-def linear_body(scene: Scene) -> RememberingBody:
+def linear_body(scene: Any) -> LinearBody:
     """That of a scene along x1."""
-    assert scene.damping_ratio is not None
-    body = scene.body or Body()
-    return RememberingBody(2.0 * scene.damping_ratio, relaxation=body.relaxation, fractional=body.fractional)
+    body = scene.body
+    if body is not None and body.receptance is not None:
+        measured: LinearBody = body.receptance.body()
+        return measured
+    remembers = {} if body is None else {"relaxation": body.relaxation, "fractional": body.fractional}
+    return RememberingBody(2.0 * scene.damping_ratio, **remembers)

@@ -22,6 +22,8 @@ from frictionlab.scene.body import Mass, Motion, with_free_motion
 from frictionlab.scene.changed import changed, with_values
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
+    BY_TABLE,
+    REMEMBERING,
     BeltVibration,
     Body,
     Drive,
@@ -29,6 +31,7 @@ from frictionlab.scene.parts import (
     Initial,
     Load,
     NormalLoadVariation,
+    Receptance,
     Relaxation,
     ScenePart,
     Slip,
@@ -48,6 +51,7 @@ __all__ = [
     "Initial",
     "Load",
     "NormalLoadVariation",
+    "Receptance",
     "Relaxation",
     "Scene",
     "Slip",
@@ -123,8 +127,13 @@ class Scene(ScenePart):
         return self
 
     def _free_problems(self) -> list[str]:
-        missing = [name for name in ("damping_ratio", "normal_load") if getattr(self, name) is None]
-        return [*(f"{name}: required" for name in missing), *problems_of_parts(self)]
+        measured = BY_TABLE in self.body_terms
+        required = ("normal_load",) if measured else ("damping_ratio", "normal_load")
+        missing = [f"{name}: required" for name in required if getattr(self, name) is None]
+        stray = [f"body.{name}" for name in self.body_terms if measured and name != BY_TABLE]
+        stray += ["damping_ratio"] if measured and self.damping_ratio is not None else []
+        left = [f"{name}: leave it out, body.receptance stands for the whole body" for name in stray]
+        return [*missing, *left, *problems_of_parts(self)]
 
     def _shown(self) -> dict[str, Any]:
         """``dimensional`` alone where that gives all the rest."""
@@ -157,8 +166,8 @@ class Scene(ScenePart):
 
     @property
     def remembers(self) -> bool:
-        """Whether the force of the body hangs on its motion long before."""
-        return not {"relaxation", "fractional"}.isdisjoint(self.body_terms)
+        """Whether the body is known by its frequency response alone, as its force hangs on its motion long before."""
+        return not {*REMEMBERING, BY_TABLE}.isdisjoint(self.body_terms)
 
     @property
     def start(self) -> Initial:
@@ -223,13 +232,13 @@ class Scene(ScenePart):
 
     def mass(self) -> Mass:
         """The numbers of a free scene."""
-        assert self.damping_ratio is not None
         assert self.normal_load is not None
+        damping_ratio = self.damping_ratio or 0.0
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
         omega_r, shaking = across.natural_frequency, self._shaking
         along, aside = shaking.load
         mass = Mass(
-            damping=2.0 * self.damping_ratio,
+            damping=2.0 * damping_ratio,
             stiffness=1.0,
             transverse_damping=2.0 * across.damping_ratio * omega_r,
             transverse_stiffness=omega_r**2,
@@ -238,7 +247,7 @@ class Scene(ScenePart):
             force=along,
             transverse_force=aside,
             varying=shaking.varying,
-            bends=self.body.bends(self.damping_ratio) if self.body is not None else (),
+            bends=self.body.bends(damping_ratio) if self.body is not None else (),
         )
         return with_free_motion(mass) if mass.bends else mass
 

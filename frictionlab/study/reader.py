@@ -53,12 +53,26 @@ def read_values(
     """
     if isinstance(source.tree, dict):
         apply_overrides(source, overrides)
+        _place_receptance(source.tree, folder)
     notes = Notes(source.notes)
     data = folder if with_files else None
     told = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes), data).values()
     if told is None or notes.all:
         raise StudyError(source.located(notes.all))
     return told
+
+
+def _place_receptance(tree: dict[str, Any], folder: FilePath) -> None:
+    """Say where the file of scene.body.receptance is: a study names it from its own folder."""
+    at: Any = tree
+    for key in ("scene", "body"):
+        at = at.get(key) if isinstance(at, dict) else None
+    if isinstance(at, dict) and isinstance(at.get("receptance"), dict):
+        at, key = at["receptance"], "file"
+    else:
+        key = "receptance"
+    if isinstance(at, dict) and isinstance(at.get(key), str):
+        at[key] = str((folder / at[key]).resolve())
 
 
 class _StudyReader:

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import EPSILON, Floats
-from frictionlab.scene.receptance import RememberingBody, linear_body
+from frictionlab.scene.receptance import LinearBody, linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
@@ -110,7 +110,7 @@ HARMONICS_OF_CORNERS = 400
 """Of a load that is not a sum of sines, on a body that remembers."""
 
 
-def free_slip_signal(body: RememberingBody, load: Signal, belt: Signal, period: float) -> Signal:
+def free_slip_signal(body: LinearBody, load: Signal, belt: Signal, period: float) -> Signal:
     """The slip velocity without friction on a belt of mean velocity zero, of a body of this frequency response."""
     waves = load.waves
     if load.pieces:
@@ -120,7 +120,7 @@ def free_slip_signal(body: RememberingBody, load: Signal, belt: Signal, period: 
     return Signal(tuple(answered(body, each, 1) for each in waves)).plus(belt.scaled(-1.0))
 
 
-def answered(body: RememberingBody, wave: Wave, order: int) -> Wave:
+def answered(body: LinearBody, wave: Wave, order: int) -> Wave:
     """x1 under a force of this wave, or its derivative of order 1."""
     response = body.receptance(np.array([wave.frequency]))[0]
     return Wave(wave.frequency, complex((1j * wave.frequency) ** order * response * wave.phasor))

@@ -69,7 +69,7 @@ class PeriodicResponse(NamedTuple):
 def periodic_response(body: LinearBody, frequency: float) -> PeriodicResponse:
     """Of forces that repeat with this circular frequency."""
     period = 2.0 * math.pi / frequency
-    count = max(4, math.ceil(period * body.fastest / RADIANS_OF_PANEL))
+    count = max(4, math.ceil(period * body.detail / RADIANS_OF_PANEL))
     halvings = 0 if body.smooth else HALVINGS
     starts, lengths, order = _panels(count, halvings)
     first = max(1.0, frequency)  # rate at which the reference decays

@@ -17,6 +17,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.mistakes.notes import WrongValues
+from frictionlab.registry import method_names
 from frictionlab.registry.law_file import read_law_file
 from frictionlab.results.state import NoMeanError
 from frictionlab.study import StudyError, parse_study
@@ -50,8 +51,7 @@ EIGHT: list[tuple[Callable[[], object], str]] = [
     ),
     (
         lambda: fl.steady_state(SCENE, LAW, method="shoting"),
-        "unknown method 'shoting'; installed: auto, exact, harmonic_balance, march, mdsm, shooting; "
-        "did you mean 'shooting'?",
+        f"unknown method 'shoting'; installed: {', '.join(method_names())}; did you mean 'shooting'?",
     ),
     (
         lambda: fl.steady_state(SCENE, "coulomb"),  # type: ignore[arg-type]

@@ -512,6 +512,7 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
     shared = "drive", "belt_vibration", "normal_load_variation", "initial"
     parts = nonsense | dict.fromkeys(shared, nonsense) | {"transverse": nonsense | {"load": nonsense}}
     parts |= {"body": nonsense | dict.fromkeys(("relaxation", "fractional"), nonsense)}
+    receptance = good() | {"scene": good()["scene"] | {"body": {"receptance": nonsense | {"file": "h.csv"}}}}
     slips = dict.fromkeys(("slip", "transverse_slip"), nonsense)
     probe = good() | nonsense | {"scene": good()["scene"] | parts | slips}
     si = good() | {"scene": {"dimensional": parts | slips}}
@@ -525,6 +526,8 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
         for part in [*both, "slip.", "transverse_slip."]
         for key in _allowed(probe, f"scene.{part}zzz")
     }
+    found |= {f"body.receptance.{key}" for key in _allowed(receptance, "scene.body.receptance.zzz")}
+    found |= {"body.receptance"}
     ours = [f"dimensional.{part}" for part in (*both, "slip.", "transverse_slip.")]
     shorter = {part + key for part in ours for key in _allowed(si, f"scene.{part}zzz")}
     assert {without_unit(key) if key.startswith("dimensional.") else key for key in scene} == found | shorter

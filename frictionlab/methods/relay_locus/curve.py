@@ -27,6 +27,7 @@ from frictionlab.methods.relay_locus.search import (
     checked,
     distinct,
     empty_motion,
+    frictionless,
     guessed,
     rewritten,
     settle_instants,
@@ -37,8 +38,9 @@ from frictionlab.numerics.linalg import solve_linear
 from frictionlab.quantities import EPSILON
 
 IMPULSE, ERROR, COUNT, DEGREE, VERDICT, GUESSES, COLUMNS = range(7)
-STEPS, TIMES_FINER = 64, 3
-"""Of the coarsest guess; how often it is doubled."""
+STEPS, TIMES_FINER, FREE_STEPS = 64, 3, 256
+"""Of the coarsest guess in steps; how often it is doubled; those in which reversals of the motion without friction
+are sought, the first guess."""
 REPAIRS = 12
 LONGEST_REST = 4.0
 """Radians of the quickest free motion in a part of a rest."""
@@ -48,26 +50,57 @@ ENOUGH = 1e-13
 
 @njit
 def follow_curve(
-    response: StepAnswer, rules: Any, waves: Any, given: Any, belt_speeds: Any, out: Any, found: Any
+    response: StepAnswer, rules: Any, waves: Any, given: Any, curve: Any, out: Any, found: Any
 ) -> None:
-    """Row i of ``out``: IMPULSE, the integral of friction over a period, to GUESSES for belt_speeds[i].
+    """Row i of ``out``: IMPULSE, the integral of friction over a period, to GUESSES for the belt speed i.
 
     rules: of ascending degree. given: limit of friction, scale of velocities, quickest free motion, error of the
-    response. found [i]: times and modes of the instants and friction at the nodes of every rest, one row an instant.
+    response. curve: belt speeds, and the places i in the order in which each is sought from the one before.
+    found [i]: times and modes of the instants and friction at the nodes of every rest, one row an instant.
     """
-    times, modes = np.empty(0), np.empty(0)
-    for i in range(belt_speeds.size):
+    belt_speeds, order = curve
+    times, modes, before, speed = np.empty(0), np.empty(0), np.empty(0), 0.0
+    for k in range(order.size):
+        i = order[k]
         setting = LocusSetting(response, rules[0], waves, given[0], belt_speeds[i])
-        guesses, sought = 0, mended_motion(setting, rules, moved_to(setting, times, modes), given)
+        start = times
+        if before.size == times.size and k > 1:
+            step = belt_speeds[order[k - 1]] - speed
+            start = foreseen(
+                times, before, (belt_speeds[i] - belt_speeds[order[k - 1]]) / step, response.period
+            )
+        guesses, sought = 0, mended_motion(setting, rules, moved_to(setting, start, modes), given)
+        if sought.verdict.kind != FINE:
+            sought = mended_motion(setting, rules, frictionless(setting, FREE_STEPS), given)
         while sought.verdict.kind != FINE and guesses <= TIMES_FINER:
             sought = mended_motion(setting, rules, guessed(setting, STEPS * 2**guesses), given)
             guesses += 1
         motion = sought.motion
         out[i, VERDICT], out[i, GUESSES], out[i, COUNT] = sought.verdict.kind, guesses, motion.times.size
         if sought.verdict.kind == FINE:
-            times, modes = motion.times, motion.modes
             write_motion(sought, given, out[i], found[i])
             out[i, DEGREE] = sought.degree
+            bare = distinct(setting, motion.times, motion.modes)
+            same = bare.modes.size == modes.size
+            for j in range(bare.modes.size):
+                same = same and bare.modes[j] == modes[j]
+            before = times if same else np.empty(0)
+            speed = belt_speeds[order[k - 1]] if k > 0 else 0.0
+            times, modes = bare.times, bare.modes
+
+
+@inner
+def foreseen(times: Any, before: Any, steps: float, period: float) -> Any:
+    """The instants so many steps on, if they keep their order and go on as from the motion before to this one."""
+    n = times.size
+    ahead = np.empty(n)
+    for j in range(n):
+        ahead[j] = times[j] + steps * (times[j] - before[j])
+    for j in range(n):
+        after = ahead[j + 1] if j < n - 1 else ahead[0] + period
+        if not 0.0 < steps < 3.0 or after - ahead[j] < 1e-6 * period:
+            return times
+    return ahead
 
 
 class Sought(NamedTuple):

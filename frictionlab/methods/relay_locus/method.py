@@ -20,20 +20,23 @@ from frictionlab.methods.relay_locus.search import FINE
 from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import EPSILON, Floats
-from frictionlab.scene.receptance import linear_body
+from frictionlab.scene.parts import BY_TABLE, REMEMBERING
+from frictionlab.scene.receptance import LinearBody, linear_body
+from frictionlab.scene.receptance_table import TabulatedBody
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal, Wave
 from frictionlab.theory.linear import answered, free_slip_signal
 from frictionlab.theory.periodic_response import periodic_response
 
-TAKEN = ("relaxation", "fractional")
+TAKEN = (*REMEMBERING, BY_TABLE)
 """Keys of a body that leave it linear."""
 REST_DEGREES = (8, 12, 16, 20, 28)
 """Of friction in a rest."""
 GRADING = 4
 """Of rests where memory has powers that are no whole numbers: makes t^(2 - q) smooth enough at every order q."""
 UNSOLVED = "no motion found that is checked: slip of one sign between its instants, friction within its limit at rest"
+HALF_FAILED = "no error known: every other row of the table gives no motion"
 HOLDS = "the belt is at rest and friction can hold the mass: it stays where it starts, with a mean friction between "
 
 
@@ -69,9 +72,14 @@ class RelayLocus(Method):
             return "relay_locus works along one line, with a mass: leave transverse and slip out"
         if scene.undriven:
             return "relay_locus needs a drive, whose period is that of the motion"
-        if not linear_body(scene).dissipates:
-            return "relay_locus needs a body that dissipates: give damping_ratio or a body with memory"
-        signals = scene.signals()
+        body, signals = linear_body(scene), scene.signals()
+        if not body.dissipates:
+            return "relay_locus needs a body that dissipates at every frequency: give damping_ratio or memory"
+        if not math.isfinite(body.mass):
+            return (
+                f"the jumps of friction have frequencies above the last one of the table, {body.known_to:g}: "
+                "give body.receptance.free_mass"
+            )
         if signals.normal_load != Signal():
             return "relay_locus needs a normal load that does not change"
         if signals.load[0].pieces or signals.belt[0].pieces:
@@ -80,13 +88,19 @@ class RelayLocus(Method):
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
-        return _Curve(scenes, law.sliding_friction(1.0), tolerance).answers()
+        coefficient, body = law.sliding_friction(1.0), linear_body(scenes[0])
+        found = LocusCurve(scenes, coefficient, tolerance, body)
+        if isinstance(body, TabulatedBody):
+            found.add_misfit(LocusCurve(scenes, coefficient, tolerance, body.halved()))
+        return found.answers()
 
 
-class _Curve:
+class LocusCurve:
     """The scenes of one curve on their way to answers."""
 
-    def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
+    def __init__(
+        self, scenes: Sequence[Scene], coefficient: float, tolerance: float, body: LinearBody
+    ) -> None:
         scene = scenes[0]
         assert scene.normal_load is not None
         self.scenes, self.coefficient, self.tolerance = scenes, coefficient, tolerance
@@ -94,18 +108,16 @@ class _Curve:
         self.belt_speeds = belt_speeds_of(scenes)
         self.load, self.belt = scene.signals().load[0], scene.signals().belt[0]
         self.period = scene.signals().period
-        self.body = linear_body(scene)
+        self.body = body
         n = len(scenes)
         self.status: list[Status] = ["ok"] * n
         self.reason, self.error_kind = [""] * n, ["estimated"] * n
         self.model = [f"{ModelWord.LOCUS}; {ModelWord.PASSIVE}"] * n
         self.rows = np.full((n, curve.COLUMNS), np.nan)
-        self.found = np.full((n, MOST_INSTANTS, 3 + REST_DEGREES[-1]), np.nan)
+        self.found = np.zeros((n, MOST_INSTANTS, 3 + REST_DEGREES[-1]))
         self.mean, self.error = np.full(n, np.nan), np.full(n, np.nan)
         self.bounds, self.unique, self.seconds = np.full((n, 2), np.nan), [PROVED] * n, 0.0
 
-    def answers(self) -> Answers:
-        """Solve and judge."""
         self.response = response_of(periodic_response(self.body, 2.0 * math.pi / self.period))
         self.free = free_slip_signal(self.body, self.load, self.belt, self.period)
         self.rules = tuple(rest_rule(degree, 1 if self.body.smooth else GRADING) for degree in REST_DEGREES)
@@ -113,6 +125,28 @@ class _Curve:
         reversing = self._without_motion(reversing)
         if len(reversing):
             self._solve(reversing)
+
+    def add_misfit(self, other: LocusCurve) -> None:
+        """Count as error how far friction in time is from that of another curve, of a body known less well."""
+        moved = np.abs(self.found[:, :, 0] - other.found[:, :, 0])
+        alike = np.all(self.found[:, :, 1] == other.found[:, :, 1], axis=1)
+        alike &= self.rows[:, curve.COUNT] == other.rows[:, curve.COUNT]
+        jumps = 2.0 * self.coefficient * moved.sum(axis=1) / self.period
+        apart = np.abs(self.mean - other.mean)
+        slips = (self.rows[:, curve.COUNT] == 0.0) & (other.rows[:, curve.COUNT] == 0.0)
+        self.error += np.where(slips, 0.0, apart + np.where(alike, jumps, 3.0 * apart))
+        for i in np.flatnonzero(np.isfinite(self.mean) & ~np.isfinite(self.error)).tolist():
+            self.status[i], self.reason[i], self.model[i] = "failed", HALF_FAILED, ""
+            self.error_kind[i], self.unique[i], self.mean[i] = "", "", np.nan
+        self._tell_large_errors("the table is too coarse for less")
+
+    def _tell_large_errors(self, why: str) -> None:
+        for i in np.flatnonzero(self.error > self.tolerance).tolist():
+            if self.status[i] == "ok":
+                self.reason[i] = f"error {self.error[i]:.1e} above the tolerance: {why}"
+
+    def answers(self) -> Answers:
+        """What was found."""
         n = len(self.scenes)
         return Answers(
             status=self.status,
@@ -161,11 +195,10 @@ class _Curve:
         order = places[np.lexsort((-np.abs(speeds), speeds < 0.0))]
         low, high = self.free.extremes(self.period)
         given = np.array([self.limit, max(high, -low), self.body.fastest, self.response.error])
-        rows, found = self.rows[order], self.found[order]
+        speeds = np.ascontiguousarray(self.belt_speeds)
         _, self.seconds = KernelCall(curve.follow_curve).timed(
-            self.response, self.rules, waves_of(self.free), given, self.belt_speeds[order], rows, found
+            self.response, self.rules, waves_of(self.free), given, (speeds, order), self.rows, self.found
         )
-        self.rows[order], self.found[order] = rows, found
         fine = self.rows[places, curve.VERDICT] == FINE
         good, per_mean = places[fine], self.period * self.normal_load
         self.mean[good] = -self.rows[good, curve.IMPULSE] / per_mean
@@ -173,8 +206,7 @@ class _Curve:
         for i in places[~fine].tolist():
             self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNSOLVED, "", ""
             self.unique[i] = ""
-        for i in good[self.error[good] > self.tolerance].tolist():
-            self.reason[i] = f"error {self.error[i]:.1e} above the tolerance: only rounding errors remain"
+        self._tell_large_errors("only rounding errors remain")
 
     def _orbits(self, places: Sequence[int]) -> Orbits:
         """Of the scenes at these places; without panels where there is none."""

@@ -57,7 +57,7 @@ def make_locus_orbits(
     for i in range(belt_speeds.size):
         if counts[i] >= 0:
             setting = LocusSetting(response, rules[degrees[i]], waves, given[0], belt_speeds[i])
-            motion = as_found(setting, found[i], max(counts[i], 1))
+            motion = as_found(setting, found[i], counts[i])
             edges = panel_edges(setting, motion, around.smooth)
             if track.filled[0] + edges.size > room:
                 room = 2 * (room + edges.size)
@@ -70,11 +70,10 @@ def make_locus_orbits(
 @inner
 def as_found(setting: LocusSetting, found: Any, count: int) -> Instants:
     """The motion that was written; without instants slip of one sign from tau = 0 on."""
-    motion, rule = empty_motion(setting, count), setting.rule
+    motion, rule = empty_motion(setting, max(count, 1)), setting.rule
     motion.times[0], motion.modes[0] = 0.0, math.copysign(1.0, -setting.belt_speed)
     for j in range(count):
-        if math.isfinite(found[j, 0]):
-            motion.times[j], motion.modes[j] = found[j, 0], found[j, 1]
+        motion.times[j], motion.modes[j] = found[j, 0], found[j, 1]
         if motion.modes[j] == 0.0:
             for k in range(rule.nodes.size):
                 motion.friction[j, k] = found[j, 2 + k]

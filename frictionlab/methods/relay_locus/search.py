@@ -184,6 +184,22 @@ def without_piece(setting: LocusSetting, motion: Instants, piece: int) -> Instan
 
 
 @inner
+def frictionless(setting: LocusSetting, steps: int) -> Instants:
+    """The reversals of slip without friction."""
+    times, modes, count = np.empty(MOST_INSTANTS), np.empty(MOST_INSTANTS), 0
+    h = setting.response.period / steps
+    before, _ = free_slip(setting.waves, 0.0)
+    for k in range(1, steps + 1):
+        now, _ = free_slip(setting.waves, k * h)
+        left, right = before - setting.belt_speed, now - setting.belt_speed
+        if (left < 0.0) != (right < 0.0) and count < MOST_INSTANTS:
+            times[count], modes[count] = h * (k - right / (right - left)), math.copysign(1.0, right)
+            count += 1
+        before = now
+    return distinct(setting, times[:count], modes[:count])
+
+
+@inner
 def guessed(setting: LocusSetting, steps: int) -> Instants:
     """Instants of the motion in so many steps a period, friction constant in each and implicit (Moreau).
 

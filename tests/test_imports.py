@@ -103,7 +103,7 @@ ARROWS = {
             "methods.reduced theory units"
         ),
         "cli": (
-            "bench charts columns explore faults fitting least_model mistakes printable registry report results "
+            "bench charts columns explore faults fitting least_model printable registry report results "
             "runner scaffold study testing units methods.words"
         ),
     }.items()

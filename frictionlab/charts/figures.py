@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -23,7 +24,6 @@ from frictionlab.charts.maps import MapFigure, map_of, map_of_curves
 from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure
-from frictionlab.charts.sweeps import plain
 from frictionlab.charts.v_lin import v_lin_of
 from frictionlab.columns import SI, by_plain_names, plain_word, symbol, word
 from frictionlab.printable import printable
@@ -38,7 +38,7 @@ FIGURES = {
 }
 OTHER_FIGURES = {
     "differences": (
-        "Mean friction less that of {reference}{shares} over {abscissa}",
+        "Difference of mean friction from that of {reference}{shares} over {abscissa}",
         ", with the sum of both errors as a band",
     ),
     "map": ("Measures of the curves over what else is swept", ": shades with lines of equal value"),
@@ -60,6 +60,8 @@ OTHER_FIGURES = {
 }
 """Those that only some tables have: what they show, and more of it for a caption."""
 BIFURCATION = "Every state that motions end in, over belt speed"
+MOST_OF_A_NAME = 24
+"""Letters of a law in the axis of differences."""
 MOST_UNASKED = 3
 """Figures that are drawn where no more are asked for."""
 IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
@@ -284,7 +286,9 @@ def _difference_figure(one: CurveFigure, law: str | None) -> CurveFigure | None:
     less = None if law is None else differences(one.family, law)
     if less is None or law is None:
         return None
-    what = symbol("normalized_friction" if one.words else "mean_friction")
-    words = {"mean_friction": f"{what} less that of\n{plain(law)}"}
+    what = symbol("normalized_friction" if one.words else "mean_friction").strip("$")
+    of = rf"({what})" if "/" in what else what
+    name = re.sub(r"[^\w ,.()+-]|_", " ", law)[:MOST_OF_A_NAME]  # nothing that a formula reads as its own
+    words = {"mean_friction": rf"${what} - {of}_\text{{{name}}}$"}
     options = one.options.model_copy(update={"inset": False})
     return replace(one, family=less, columns=["mean_friction"], options=options, words=words, level=True)

@@ -262,7 +262,7 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
             tau = loop.column("tau")[:-1]
             at = np.searchsorted(tau, np.arange(0.0, tau[-1] + 1e-9, period) - 1e-9 * period)
             axes.plot(x[at], y[at], ls="none", color=looks.color(loop.curve), zorder=4, **POINCARE)
-    if kind == IN_TIME and (load := point.loops[0].load).any():
+    if kind == IN_TIME and (load := point.loops[-1].load).any():  # at the times x of the last
         highest = max(np.abs(axes.dataLim.get_points()[:, 1]))
         axes.plot(x, LOAD_SHARE * highest / np.abs(load).max() * load, zorder=0, **LOAD_LINE)
     if kind == PHASE:

@@ -57,11 +57,9 @@ def folder(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
 
 def check_laws(names: Iterable[str], known: Laws) -> None:
     """Raises UsageError for the first name that no law has."""
-    from frictionlab.mistakes.notes import unknown_name
-
     for name in names:
         if name not in known.names():
-            said, hint = unknown_name("law", name, list(known.names()))
+            said, hint = known.unknown(name)
             raise click.UsageError(f"{said}; {hint}" if hint else said)
 
 

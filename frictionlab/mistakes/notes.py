@@ -175,9 +175,15 @@ def did_you_mean(name: str, among: Iterable[str], missing: Iterable[str] = ()) -
     return f"did you mean '{found}'?" if found is not None else ""
 
 
-def unknown_name(what: str, given: str, installed: Sequence[str]) -> tuple[str, str]:
-    """The sentence for the name of a law or method that is not installed, and a suggestion."""
-    return f"unknown {what} '{given}'; installed: {', '.join(installed)}", did_you_mean(given, installed)
+def unknown_name(
+    what: str, given: str, installed: Sequence[str], told: Iterable[str] | None = None
+) -> tuple[str, str]:
+    """The sentence for the name of a law or method that is not installed, and a suggestion.
+
+    told: how the installed ones are listed, where not by all their names.
+    """
+    listed = ", ".join(installed if told is None else told)
+    return f"unknown {what} '{given}'; installed: {listed}", did_you_mean(given, installed)
 
 
 def number_text(value: float) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 from frictionlab.faults import BrokenPlugin, from_outside
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.mistakes.notes import unknown_name
 from frictionlab.registry.entry_points import (
     Home,
     check_class,
@@ -98,6 +99,17 @@ class Laws:
             for law, own in names.items()
             for first in [min(own, key=lambda name: name.replace("-", "") != law.__name__.lower())]
         }
+
+    def unknown(self, name: str) -> tuple[str, str]:
+        """The sentence for a name that no law has, and a suggestion."""
+        aliases = self.aliases()
+        others = {each for own in aliases.values() for each in own}
+        told = (
+            f"{each} (or {', '.join(aliases[each])})" if aliases.get(each) else each
+            for each in self.names()
+            if each not in others
+        )
+        return unknown_name("law", name, self.names(), told)
 
     def broken(self) -> list[str]:
         """A message for every broken law and for every plugin with the name of a law of frictionlab."""

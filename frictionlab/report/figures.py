@@ -148,13 +148,13 @@ def _lines(family: Family) -> Iterator[Markup]:
 
 
 def _held_and_missing(run: Facts) -> Iterator[Markup]:
-    """The values of the scene that are the same in every point; how many points have no number but a mark."""
+    """The values of the scene, no defaults, that all points share; how many points have no number but a mark."""
     study = run.saved.study
     fixed = [
         Markup("{} = {}").format(symbol_html(name), html(typeset(value.text)))
         if isinstance(value, Written)
         else setting(name, value)
-        for name, value in given_of(study).items()
+        for name, value in given_of(study, defaults=False).items()
         if name not in study.sweep and not is_taken(study, name)
     ]
     if fixed:

@@ -98,7 +98,7 @@ def _pair(pair: Difference) -> list[Cell]:
     same = "" if pair.apart else "the same within errors: "
     differs = f"{same}{with_error(pair.value, pair.error)}"
     counts = f"{pair.apart} of {pair.shared}"
-    return [pair.law, f"{pair.one} less {pair.other}", differs, settings(pair.where), counts]
+    return [pair.law, f"{pair.one} \N{MINUS SIGN} {pair.other}", differs, settings(pair.where), counts]
 
 
 def whole_grid(run: Facts) -> Grid | None:

@@ -156,9 +156,9 @@ def is_taken(study: Study, name: str) -> bool:
     return body is not None and name.endswith(".length_m") and body.length_m == own_length(body)
 
 
-def given_of(study: Study) -> dict[str, Any]:
-    """The values of the scene by their columns."""
-    return {f"scene.{path}": value for path, value in study.scene.given_values().items()}
+def given_of(study: Study, defaults: bool = True) -> dict[str, Any]:
+    """The values of the scene by their columns, those that are defaults where they are asked for."""
+    return {f"scene.{path}": value for path, value in study.scene.given_values(defaults).items()}
 
 
 def shown_name(study: Study, name: str) -> str:

@@ -49,12 +49,13 @@ def shape_sentence(run: Facts) -> Markup:
     """The shapes of the curves in words; why there is none."""
     curves = run.saved.curves
     if curves is None or curves.empty or "shape" not in curves:
-        return Markup("No curve has two belt speeds, so no shape is read.")
+        return Markup("No curve has two belt speeds, so none has a shape.")
     found, without = _verdicts(run, curves), int(curves["shape"].isna().sum())
     if not found:
-        return Markup("No shape is read: {}.").format(_why_not(curves))
+        return Markup("No curve has a shape: {}.").format(_why_not(curves))
     told = _one(found[0]) if len(found) == 1 else _several(found, every=not without)
-    rest = f"; of {counted(without, 'curve')} none is read ({_why_not(curves)})" if without else ""
+    has = "has" if without == 1 else "have"
+    rest = f"; {counted(without, 'curve')} {has} no shape ({_why_not(curves)})" if without else ""
     return Markup("{}{}{}. {}").format(told, _otherwise(run, curves, found), rest, _end(run, found))
 
 

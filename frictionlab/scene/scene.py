@@ -273,10 +273,14 @@ class Scene(ScenePart):
             tree["dimensional"]["initial"] = self.dimensional.initial.model_dump(exclude_unset=True)
         return {"dimensional": tree["dimensional"]}
 
-    def given_values(self) -> dict[str, float | str]:
-        """Those of ``values`` that were given: only the SI ones where the scene is in SI units."""
+    def given_values(self, defaults: bool = True) -> dict[str, float | str]:
+        """Those of ``values`` that were given: only the SI ones where the scene is in SI units.
+
+        defaults: what has its default, too.
+        """
         kept = "" if self.dimensional is None else "dimensional."
-        return {path: value for path, value in self.values().items() if path.startswith(kept)}
+        told = _flat(self.model_dump(exclude_none=True, exclude_defaults=not defaults))
+        return {path: value for path, value in told.items() if path.startswith(kept)}
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Scene:
         """The same scene with other values: ``with_({"drive.frequency": 2}, normal_load=3)``; None leaves one out.

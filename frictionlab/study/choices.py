@@ -10,8 +10,6 @@ from frictionlab.mistakes.notes import Notes, Path, unknown_name, value_text
 from frictionlab.mistakes.validation import build_record
 from frictionlab.study.parts import LawChoice, MethodChoice, plain_values
 
-REMEDIES = {"law": "; install the package that provides it, or list its file under plugins"}
-
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
     """The items of a list that must not be empty."""
@@ -28,8 +26,12 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
     if not isinstance(given, dict):
         notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {value_text(given)}")
         return None
-    if "kind" in given and given["kind"] not in laws.names() and notes.below(("plugins",)):
-        return None  # an unreadable law file may define it
+    if isinstance(kind := given.get("kind"), str) and kind not in laws.names():
+        if not notes.below(("plugins",)):  # an unreadable law file may define it
+            said, hint = laws.unknown(kind)
+            remedy = "install the package that provides it, or list its file under plugins"
+            notes.add((*path, "kind"), f"{said}; {remedy}", hint)
+        return None
     if (item := _item(given, "law", laws.names(), path, notes)) is None:
         return None
     law = build_record(laws.named(item.kind), item.parameters, path, notes)
@@ -102,8 +104,7 @@ def _name(given: Any, what: str, installed: Sequence[str], path: Path, notes: No
     if isinstance(given, str) and given in installed:
         return given
     if isinstance(given, str):
-        said, hint = unknown_name(what, given, installed)
-        notes.add(path, f"{said}{REMEDIES.get(what, '')}", hint)
+        notes.add(path, *unknown_name(what, given, installed))
     else:
         notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
     return None

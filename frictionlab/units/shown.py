@@ -13,6 +13,8 @@ from frictionlab.units.text import factor_of
 if TYPE_CHECKING:
     import pandas as pd
 
+SIX_DIGITS = 1e-5
+"""Of a number told in a sentence what rounding may have taken, relative to it."""
 _PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6}
 
 
@@ -70,6 +72,6 @@ def handy_unit(unit: str, largest: float) -> ShownUnit:
     """The unit with a prefix, of which the largest number is 1 to 1000; as it is where there is none."""
     if not 0.0 < largest < math.inf:
         return ShownUnit(unit)
-    below = [(prefix, size) for prefix, size in _PREFIXES.items() if size <= largest * (1.0 + 1e-9)]
+    below = [(prefix, size) for prefix, size in _PREFIXES.items() if size <= largest * (1.0 + SIX_DIGITS)]
     prefix, size = below[-1] if below else ("n", 1e-9)
     return ShownUnit(f"{prefix}{unit}", size)

@@ -68,7 +68,7 @@ def test_differences_are_taken_from_coulomb_or_the_law_asked_for(
     figure = _drawn(laws, "differences", against=against)
 
     axes = figure.axes[0]
-    assert axes.get_ylabel().endswith(law)
+    assert axes.get_ylabel() == rf"$\bar\mu - \bar\mu_\text{{{law}}}$"
     rows = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
     ((_, y),) = curves_of(axes)
     np.testing.assert_allclose(y, sign * 0.02 * rows["mean_friction"], atol=1e-12)
@@ -179,7 +179,7 @@ def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
     figure = figure_of(FigureData(laws, options=options), "differences")
 
     assert dict(mpl.rcParams) == before
-    assert figure.axes[0].get_ylabel().endswith("other")
+    assert figure.axes[0].get_ylabel().endswith("other}$")
     labels = [label for axes in figure.axes for label in axes.get_yticklabels()]
     assert {label.get_fontsize() for label in labels} == {STYLE["ytick.labelsize"]}
     pixels = imread(BytesIO(figure._repr_png_()))
@@ -231,7 +231,7 @@ def test_only_the_figure_that_shows_a_finding_bears_the_title(laws: pd.DataFrame
 
     assert titles() == {
         "mean_friction": "A finding",
-        "differences": "Mean friction less that of coulomb over belt speed",
+        "differences": "Difference of mean friction from that of coulomb over belt speed",
         "velocity": "Velocity amplitude over belt speed",
         "energies": "Work of the loads, viscous loss, work absorbed by friction, heat in the contact over belt speed",
     }

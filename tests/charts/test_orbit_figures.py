@@ -102,6 +102,9 @@ def test_time_runs_in_drive_periods_and_constant_friction_is_level() -> None:
 def test_beside_the_velocity_are_that_across_the_belt_and_the_load() -> None:
     def planar(rows: Sequence[int]) -> pd.DataFrame:
         found = orbits_of(rows)
+        found = found[
+            (found["row"] < len(SPEEDS)) | (found["tau"] < found["tau"].max())
+        ]  # each law its own times
         return found.assign(v2=-0.5 * found["v1"], load=7.0 * found["v1"])
 
     figure = of_orbits("time_series", orbits=planar)

@@ -490,7 +490,8 @@ def test_a_law_that_is_not_installed_is_code_2_with_the_one_that_is_meant(fricti
         said = frictionlab(*arguments)
 
         assert (said.code, said.out) == (2, "")
-        assert "unknown law 'dupond'" in said.err
+        assert "unknown law 'dupond'; installed: " in said.err
+        assert "elasto-plastic (or dupont), " in said.err
         assert said.err.endswith("did you mean 'dupont'?\n")
 
 

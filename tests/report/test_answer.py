@@ -186,7 +186,7 @@ def test_the_first_sentence_says_who_is_highest_where(which: str) -> None:
 def test_a_run_without_a_number_says_so_three_times() -> None:
     assert told(curve("coulomb", [NONE, NONE])) == [
         "No point has a number.",
-        "No curve has two belt speeds, so no shape is read.",
+        "No curve has two belt speeds, so none has a shape.",
         "Needs attention: 2 of 2 points are refused.",
     ]
 
@@ -220,7 +220,7 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
     ),
     "curves that are not all are counted": (
         [shape("coulomb", "concave"), shape("dahl", "concave"), shape("lugre", None, "no points")],
-        f"2 curves are concave (above their chords); of 1 curve none is read (no points). {STOPS}",
+        f"2 curves are concave (above their chords); 1 curve has no shape (no points). {STOPS}",
     ),
     "a few curves that differ are named": (
         [
@@ -229,7 +229,7 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
             shape("lugre", None, "no points"),
         ],
         "The curve of Coulomb is concave (above its chord); that of dahl is convex (below its chord); "
-        "of 1 curve none is read (no points). Slip stops reversing at vb from 40 to 50.",
+        "1 curve has no shape (no points). Slip stops reversing at vb from 40 to 50.",
     ),
     "many curves are told by what parts their shapes": (
         [shape("coulomb", "concave", **{FREQUENCY: each}) for each in FREQUENCIES]
@@ -243,9 +243,9 @@ SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
         ],
         f"Of 8 curves 7 are concave (above their chords) and 1 convex (below its chord: Ω = 3). {STOPS}",
     ),
-    "why no shape is read is told by the commonest reason": (
+    "why no curve has a shape is told by the commonest reason": (
         [shape("coulomb", None, "3 points"), shape("dahl", None, "4 points"), shape("lugre", None, "sticks")],
-        "No shape is read: 3 ... 4 points; 1 curve for other reasons.",
+        "No curve has a shape: 3 ... 4 points; 1 curve for other reasons.",
     ),
 }
 

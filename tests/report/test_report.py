@@ -466,7 +466,7 @@ def test_captions_say_what_is_drawn_what_tells_curves_apart_and_what_is_held_fix
 
     assert first.caption.striptags() == (
         "Mean friction coefficient μ̄ against belt speed vb. Law Coulomb; method fake. A curve for each Ω = 1, 1.5. "
-        "Held fixed: β1 = 0.1, γ2 = 10, α = 10, φ1 = 0 deg. Without a number, and marked as such: 2 points refused."
+        "Held fixed: β1 = 0.1, γ2 = 10, α = 10. Without a number, and marked as such: 2 points refused."
     )
     assert first.description.endswith("mean friction coefficient μ̄: from 0.1015 to 0.1015.")
 

@@ -71,3 +71,10 @@ def test_python_s_pages_tell_the_type_of_every_parameter(pages: dict[str, str]) 
         told = " ".join(re.sub(r"<[^>]+>", "", first) for first, kind in rows if re.sub(r"<[^>]+>", "", kind))
         taken = set(inspect.signature(getattr(fl, name)).parameters) - {"label"}
         assert [parameter for parameter in taken if not re.search(rf"\b{parameter}\b", told)] == [], name
+
+
+def test_what_is_raised_is_told_or_nothing_is_said_of_it(pages: dict[str, str]) -> None:
+    for name in ("api", "api_scenes"):
+        told = re.findall(r"<strong>Raises</strong>(.*?)</p>", pages[name], re.DOTALL)
+        assert told
+        assert [each for each in told if not re.search(r"\w", re.sub(r"<[^>]+>", "", each))] == []

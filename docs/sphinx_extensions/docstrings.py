@@ -106,7 +106,7 @@ def _without_raised(text: str) -> tuple[str, list[str]]:
     raised = [
         BY_ALL.sub("", each.removeprefix("Raises ")) for each in paragraphs if each.startswith("Raises ")
     ]
-    linked = [RAISED.sub(r":ref:`\1 <what-is-raised>`", each) for each in raised if each != "."]
+    linked = [RAISED.sub(r":ref:`\1 <what-is-raised>`", each) for each in raised if each.strip(".\n ")]
     left_out = ("Raises ", "Source: ", "Sources: ")  # what is computed, and from whom, is in theory
     kept = "\n\n".join(each for each in paragraphs if not each.startswith(left_out))
     return kept, [line for each in linked for line in [f"**Raises** {each}", ""]]

@@ -15,9 +15,9 @@ from scipy.optimize import elementwise
 
 from frictionlab.quantities import Floats
 
-XTOL = 1e-9
+XTOL = 1e-7
 """Of a root, in steps of the grid."""
-STRAIGHT = 2e-3
+STRAIGHT = 5e-3
 """How far a line may leave its chords, as a share of the larger side of the grid."""
 MOST_HALVINGS = 5
 _APART = 1e-3  # of the places at which slopes are taken [steps of the grid]

@@ -210,15 +210,14 @@ def _linked(shape: str, count: int, names: Markup | str = "") -> Markup:
 
 
 def shape_grid(run: Facts) -> Grid | None:
-    """The measures of curves.csv, each with its error, the verdict first; None where there are none."""
+    """The measures of curves.csv, each with its error, the verdict first; None where no curve has a shape."""
     table = run.saved.curves
-    if table is None or not set(SHAPE_HEADS) & set(table):
-        return None
-    own, curves, unit = (
-        [name for name in SHAPE_HEADS if name in table],
-        run.curves_of(table),
-        unit_html(run.speed),
+    own = (
+        [] if table is None else [name for name in SHAPE_HEADS if name in table and table[name].notna().any()]
     )
+    if table is None or {*own} <= {"reversal_end", "reduction"}:
+        return None
+    curves, unit = run.curves_of(table), unit_html(run.speed)
     rows = (
         [*who, *(_measure(run, curve, name) for name in own)]
         for who, curve in zip(whose(curves), curves, strict=True)

@@ -497,6 +497,8 @@ def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
     path = "scene.dimensional."
     sweep = {f"{path}drive.amplitude_N": [5.0, 6.0], f"{path}belt_speed_m_per_s": [0.1, 0.2, 0.3]}
     saved = ran(scene={"dimensional": given}, sweep=sweep)
+    without = page_of(saved)
+    saved.curves["shape"] = "concave"
     page = page_of(saved)
     caption = pictures(Facts(saved))[0].caption.striptags()
 
@@ -506,6 +508,7 @@ def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
     assert "A curve for each F1 = 5, 6 N. Held fixed: M = 3 kg, K1 = 300 N/m," in caption
     for name in ("Curves", "Shape"):
         assert [row[1] for row in page.table(name)[1:]] == ["F1 = 5 N", "F1 = 6 N"]
+    assert not any(caption.text.startswith("Shape") for caption in without.all("caption"))
 
 
 def test_a_length_that_was_left_out_is_told_as_taken(ran: Runner) -> None:

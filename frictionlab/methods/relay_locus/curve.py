@@ -42,7 +42,7 @@ STEPS, TIMES_FINER, FREE_STEPS = 64, 3, 256
 """Of the coarsest guess in steps; how often it is doubled; those in which reversals of the motion without friction
 are sought, the first guess."""
 REPAIRS = 12
-LONGEST_REST = 4.0
+LONGEST_REST = 6.0
 """Radians of the quickest free motion in a part of a rest."""
 ENOUGH = 1e-13
 """Share of the limit that friction in a rest may be off for a polynomial of too low a degree."""
@@ -232,7 +232,7 @@ def impulse_bound(sought: Sought, given: Any) -> float:
         + rough * setting.response.period
     )
     of_friction = 256.0 * EPSILON * setting.limit + rough
-    error = (4.0 * rough + 64.0 * EPSILON * setting.limit) * setting.response.period
+    error = (4.0 * rough + 256.0 * EPSILON * n * setting.limit) * setting.response.period
     for i in range(n):
         work, moved = sought.derivatives.copy(), np.zeros(n)
         moved[i] = of_friction if mode_before(motion, i) == 0.0 else of_slip

@@ -21,7 +21,7 @@ from frictionlab.numerics.linalg import solve_linear
 
 MOST_NEWTONS = 40
 MOST_CHANGES, SPLITTINGS = 12, 1000
-SLIP_SAMPLES = 16
+SLIP_SAMPLES, MOST_DIPS = 16, 6
 """Of a piece of slip, closer at its ends."""
 FINE, NO_ROOT, VANISHED, WRONG = range(4)
 
@@ -103,9 +103,46 @@ def checked(setting: LocusSetting, motion: Instants, scale: float) -> Objection:
                 shares[k] = 0.5 * (1.0 - math.cos(math.pi * (k + 0.5) / samples))
                 slips[k] = locus_slip(setting, motion, motion.times[j] + shares[k] * length)
             start, stop = below(shares, 0.0, mode, slips, -1e-10 * scale)
+            for k in range(1, samples - 1):
+                if start == stop and mode * slips[k] <= min(mode * slips[k - 1], mode * slips[k + 1]):
+                    start, stop = dip(setting, motion, j, (shares, slips, k), -1e-10 * scale)
             if start < stop:
                 return Objection(WRONG, j, start, stop, 0.0)
     return verdict_of(FINE, 0)
+
+
+@inner
+def dip(setting: LocusSetting, motion: Instants, j: int, sampled: Any, least: float) -> tuple[float, float]:
+    """From where to where slip has the wrong sign about a sample nearer to zero than its neighbours, by parabolas
+    through it; two zeros where it does not."""
+    (shares, slips, k), mode = sampled, motion.modes[j]
+    length = length_of(motion, setting.response.period, j)
+    x, y, bend = shares[k], mode * slips[k], 0.0
+    left, right = shares[k - 1], shares[k + 1]
+    at_left, at_right = mode * slips[k - 1], mode * slips[k + 1]
+    for _ in range(MOST_DIPS):
+        down, up = (y - at_left) / (x - left), (at_right - y) / (right - x)
+        bend = (up - down) / (right - left)
+        if not bend > 0.0:
+            return 0.0, 0.0
+        new = x - 0.5 * (down * (right - x) + up * (x - left)) / (right - left) / bend
+        if not left < new < right or abs(new - x) < 1e-6 * (right - left):
+            break
+        value = mode * locus_slip(setting, motion, motion.times[j] + new * length)
+        if value < y:
+            if new < x:
+                right, at_right = x, y
+            else:
+                left, at_left = x, y
+            x, y = new, value
+        elif new < x:
+            left, at_left = new, value
+        else:
+            right, at_right = new, value
+    if y >= least:
+        return 0.0, 0.0
+    half = math.sqrt(-y / bend)
+    return max(0.0, x - half), min(1.0, x + half)
 
 
 @inner

@@ -63,6 +63,17 @@ def test_a_plain_body_has_the_mean_that_exact_finds(curve):
             assert abs(ours.mean[i] - exact.mean[i]) <= ours.error[i] + exact.error[i]
 
 
+def test_a_rest_too_short_to_be_seen_between_samples_is_found():
+    """Slip comes within 1e-3 of the fastest to zero, between two samples, and rests there for 0.05."""
+    scene = driven(1.0, 0.15656229372058034, 0.012477302715197083, 0.3600288998630936)
+    speeds = [0.0011613]
+
+    ours, exact = answers(RelayLocus(), scene, speeds), answers(Exact(), scene, speeds)
+
+    assert ours.mean[0] == pytest.approx(exact.mean[0], abs=1e-12)
+    assert ours.columns["stick_fraction"][0] == pytest.approx(exact.columns["stick_fraction"][0], abs=1e-10)
+
+
 def test_all_columns_of_a_plain_body_are_those_of_exact():
     scene = driven(10.0, 1.0, 0.1, 4.0)
     speeds = [-20.0, 0.0, 0.3, 5.0, 30.0, 48.0, 49.9, 60.0]

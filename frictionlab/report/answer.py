@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import pandas as pd
 from markupsafe import Markup, escape
@@ -24,6 +24,8 @@ MOST_STRETCHES = 4
 """Stretches of the axis that are told one by one; of more, how many points each has."""
 IN_SHORT = 3
 """Digits of a distance that is told in a sentence."""
+OF_A_PLACE = 4
+"""Digits of a swept value in a sentence."""
 ALL_WELL = Markup('<span class="good">Nothing needs attention:</span> {} ok{}{}.')
 
 
@@ -75,12 +77,12 @@ def _off(run: Facts, who: str, pairs: Sequence[Difference]) -> Markup:
     if not any(pair.apart for pair in pairs):
         return Markup("{} agrees with {} within errors").format(who, the(pairs[0].other))
     if len(pairs) == 1:
-        return Markup("{} is {}, at {}").format(who, _far(pairs[0]), settings(pairs[0].where))
+        return Markup("{} is {}, at {}").format(who, _far(pairs[0]), _at(pairs[0].where))
     told: list[Markup] = []
     for pair in pairs:
         speed = {name: value for name, value in pair.where.items() if name == run.speed}
-        others = settings({name: value for name, value in pair.where.items() if name not in speed})
-        by = Markup(" ({})").format(settings(speed)) if speed else ""
+        others = _at({name: value for name, value in pair.where.items() if name not in speed})
+        by = Markup(" ({})").format(_at(speed)) if speed else ""
         told.append(Markup("at {} {}{}{}").format(others, "" if told else f"{who} is ", _far(pair), by))
     return Markup(", ").join(told)
 
@@ -110,7 +112,7 @@ def _methods(run: Facts) -> Markup:
         return Markup("")
     most = max(pairs, key=lambda each: (each.apart > 0, abs(each.value)))
     which = "" if len(pairs) == 1 else "of the methods, "
-    where = Markup(" at {}").format(settings(most.where)) if most.where else ""
+    where = Markup(" at {}").format(_at(most.where)) if most.where else ""
     alike = "" if most.apart else ", the same within errors"
     told = Markup("; {}{} and {} differ most, by {}{}{}")
     return told.format(which, most.one, most.other, with_error(abs(most.value), most.error), where, alike)
@@ -189,13 +191,13 @@ class _Ranked(NamedTuple):
         """How far one is above another at a point."""
         mean, error = self.ranking.mean[at], self.ranking.error[at]
         far = with_error(float(mean[high] - mean[low]), float(error[high] + error[low]), IN_SHORT)
-        where = settings(self.ranking.points.iloc[at].to_dict())
+        where = _at(self.ranking.points.iloc[at].to_dict())
         return Markup("{} is up to {} above {}, at {}").format(self.name(high), far, self.name(low), where)
 
     def where(self, start: int, stop: int) -> Markup:
         """A stretch of the axis."""
         values = self.ranking.points[self.along]
-        first, last = (settings({self.along: values.iloc[place]}) for place in (start, stop))
+        first, last = (_at({self.along: values.iloc[place]}) for place in (start, stop))
         if start == stop:
             return Markup("at {}").format(first)
         if start == 0:
@@ -245,7 +247,7 @@ def _zero(mean: Floats, error: Floats, places: pd.Series) -> Markup:
     if not past or past[0] == 0:
         return Markup("")
     after = past[0]
-    before, at = (settings({places.name: places.iloc[place]}) for place in (after - 1, after))
+    before, at = (_at({places.name: places.iloc[place]}) for place in (after - 1, after))
     if abs(mean[after]) <= error[after]:
         return Markup(", through zero at {}").format(at)
     return Markup(", through zero between {} and {}").format(before, at)
@@ -258,7 +260,7 @@ def _means_at(
     told: list[str | Markup] = []
     for _, row in rows.iloc[places].iterrows():
         told.append(with_error(float(row["mean_friction"]), float(row["error"]), digits))
-        told.append(settings({name: row[name] for name in names}))
+        told.append(_at({name: row[name] for name in names}))
     return told
 
 
@@ -320,3 +322,7 @@ def _who(rows: pd.DataFrame, table: pd.DataFrame) -> Markup:
         if rows[name].nunique() < table[name].nunique()
     ]
     return Markup(" ({})").format(Markup(", ").join(told)) if told else Markup("")
+
+
+def _at(values: Mapping[str, Any]) -> Markup:
+    return settings(values, OF_A_PLACE)

@@ -48,26 +48,26 @@ def grid(
     )
 
 
-def settings(values: Mapping[str, Any]) -> Markup:
+def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
     """Inputs with their values, those that do not apply left out."""
-    told = [setting(name, value) for name, value in values.items() if not pd.isna(value)]
+    told = [setting(name, value, digits) for name, value in values.items() if not pd.isna(value)]
     return Markup(", ").join(told)
 
 
-def setting(name: str, value: Any) -> Markup:
+def setting(name: str, value: Any, digits: int = 6) -> Markup:
     """One input with its value and unit, on one line where it is short."""
-    told = Markup("{} = {}{}").format(symbol_html(name), number(value), unit_html(name))
+    told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit_html(name))
     short = len(told.striptags()) <= SHORT_SETTING
     return Markup('<span class="short">{}</span>').format(told) if short else told
 
 
-def number(value: Any) -> str:
-    """A number to six digits; nothing for one that does not apply."""
+def number(value: Any, digits: int = 6) -> str:
+    """A number to so many digits; nothing for one that does not apply."""
     if isinstance(value, str):
         return value
     if value is None or pd.isna(value):
         return ""
-    return f"{value:.6g}"
+    return f"{value:.{digits}g}"
 
 
 def size(value: float) -> str:

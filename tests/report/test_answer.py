@@ -330,3 +330,10 @@ def test_a_remark_on_a_point_that_is_ok_needs_attention() -> None:
     rows["reason"] = ["tested: 2 starts ended here", "still changes a little"]
 
     assert told(rows)[2] == "Needs attention: 1 point carries a remark."
+
+
+def test_places_have_four_digits_in_sentences() -> None:
+    first, *_ = told(curve("coulomb", [0.1, 0.2]).assign(**{SPEED: [517.947, 719.686]}))
+
+    assert "vb = 517.9" in first
+    assert "vb = 719.7" in first

@@ -21,6 +21,7 @@ GALLERY = Path(__file__).parent
 STUDIES = GALLERY.parent.parent / "studies"
 FOUND = {
     "paper": "The paper, claim by claim",
+    "atlas": "Where friction curves are concave",
     "dynamic_laws": "What dynamic laws change",
 }
 """Pages beside this folder, of what many studies found together."""

@@ -7,7 +7,7 @@ curves: how far friction falls, and the area that decides on their shape.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -108,10 +108,11 @@ class MapFigure:
         for axes, picture, grid, told in zip(places, self.pictures, grids, titles, strict=True):
             mesh = _draw_shades(axes, grid, norm)
             if column != "error":  # which jumps from point to point
-                _draw_contours(axes, grid, norm, self._levels_solved(column))
+                _draw_contours(axes, grid, norm, self._solved_lines(picture, column))
             if self._along_speed:
                 self._draw_v_lin(axes, picture)
-            self._draw_boundaries(axes, picture, column)
+            for _, line in self._solved_lines(picture, column).groupby(["level", "piece"]):
+                axes.plot(*(line[name] for name in self.over), **BOUNDARY_LINE)
             self._mark_missing(axes, picture)
             axes.set(xlabel=self.words[0], ylabel=self.words[1])
             axes.spines[["top", "right"]].set_visible(True)
@@ -139,19 +140,12 @@ class MapFigure:
         axes.autoscale(False)
         axes.plot(x, y, color="white", linestyle="dashed", linewidth=1.1, path_effects=[DARK_EDGE])
 
-    def _levels_solved(self, column: str) -> set[float]:
-        """The levels of a measure whose lines were solved for."""
+    def _solved_lines(self, picture: CurveData, column: str) -> pd.DataFrame:
+        """The lines of levels of a measure that were solved for, of the law and the method of a picture."""
         if self.boundaries is None:
-            return set()
-        return set(self.boundaries["level"][self.boundaries["measure"] == column].tolist())
-
-    def _draw_boundaries(self, axes: Axes, picture: CurveData, column: str) -> None:
-        """The lines that were solved for, of the law and the method of a picture."""
-        if self.boundaries is None:
-            return
+            return pd.DataFrame(columns=[*BOUNDARIES])
         own = picture.rows_in(self.boundaries, (*BOUNDARIES, *self.over))
-        for _, line in own[own["measure"] == column].groupby(["level", "piece"]):
-            axes.plot(*(line[name] for name in self.over), **BOUNDARY_LINE)
+        return own[own["measure"] == column]
 
     def _mark_missing(self, axes: Axes, picture: CurveData) -> None:
         look: Any = {"linestyle": "none", "color": "0.3", "markersize": 3}
@@ -243,15 +237,15 @@ def _draw_shades(axes: Axes, grid: MapValues, norm: Normalize) -> QuadMesh:
     return mesh
 
 
-def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize, without: Container[float]) -> None:
-    """Labelled lines of equal value but for some, zero a broad one."""
+def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize, solved: pd.DataFrame) -> None:
+    """Labelled lines of equal value but for those that were solved for, zero a broad one."""
     low, high = float(norm.vmin or 0.0), float(norm.vmax or 0.0)
     few = min(grid.known.shape) < 2 or np.isfinite(grid.known).sum() < 4
     if few or not low < high:
         return
     edge = LEVEL_EDGE * (high - low)  # a plateau at an end differs from it by rounding
     levels = [at for at in MaxNLocator(MOST_LEVELS).tick_values(low, high) if low + edge < at < high - edge]
-    levels = [at for at in levels if at not in without]
+    levels = [at for at in levels if at not in set(solved["level"])]
     if not levels:
         return
     broad = [1.8 if at == 0.0 else 0.7 for at in levels]

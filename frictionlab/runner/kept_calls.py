@@ -11,6 +11,7 @@ import io
 import pickle
 import shutil
 from contextlib import suppress
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -58,13 +59,13 @@ class KeptCalls:
 
 
 class _Records(pickle.Unpickler):
-    """Reads numbers, texts, arrays and named tuples of this package, and nothing that could run."""
+    """Reads numbers, texts, arrays, and named tuples and words of this package, and nothing that could run."""
 
     def find_class(self, module: str, name: str) -> Any:
         """Raises UnpicklingError."""
         package = module.partition(".")[0]
         if package == "frictionlab" or (package == "numpy" and name in _OF_ARRAYS):
             found = super().find_class(module, name)
-            if package == "numpy" or (isinstance(found, type) and issubclass(found, tuple)):
+            if package == "numpy" or (isinstance(found, type) and issubclass(found, tuple | StrEnum)):
                 return found
         raise pickle.UnpicklingError(f"{module}.{name} is no record")

@@ -16,6 +16,8 @@ from frictionlab.scene.as_written import without_unit
 from frictionlab.study import Expectation, Study, StudyError, load_study, parse_study
 from frictionlab.study.schema import schema
 
+STUDIES = Path(__file__).parents[2] / "studies"
+
 
 @pytest.fixture
 def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
@@ -539,7 +541,10 @@ def _dotted_keys(tree: dict[str, Any]) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "file", sorted(Path(__file__).parents[2].glob("studies/**/*.yaml")), ids=lambda file: file.stem
+    "file",
+    # those that bring a plugin's law meet the same law installed
+    [file for file in sorted(STUDIES.rglob("*.yaml")) if "plugins:" not in file.read_text(encoding="utf-8")],
+    ids=lambda file: file.stem,
 )
 def test_the_studies_use_keys_of_the_schema(file: Path) -> None:
     made, tree = schema(), load_study(file).resolved()

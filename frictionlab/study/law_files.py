@@ -90,18 +90,27 @@ def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | No
 
 
 def laws_of(files: Sequence[LawFile]) -> registry.Laws:
-    """The installed laws and those of these files. Raises BrokenPlugin where two have the same name."""
+    """The installed laws and those of these files. Raises BrokenPlugin where two have the same name.
+
+    A file may be the very text of an installed law.
+    """
     own: dict[str, type[FrictionLaw]] = {}
     homes = {name: file.home(name) for file in files for name in file.laws}
     for file in files:
         for name, law in file.laws.items():
-            if name in registry.law_names():
+            if name in registry.law_names() and not _is_installed(name, file):
                 raise file.home(name).broken("an installed law has the same name; rename the class")
             if name in own:
                 other = next(each.path for each in files if name in each.laws)
                 raise file.home(name).broken(f"{other} has a law of the same name; rename one of the classes")
             own[name] = law
     return registry.Laws(own, homes)
+
+
+def _is_installed(name: str, file: LawFile) -> bool:
+    """Whether the installed law of this name comes from the same text."""
+    source = inspect.getsourcefile(registry.law_class(name))
+    return source is not None and FilePath(source).read_text(encoding="utf-8") == file.text
 
 
 def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:

@@ -15,6 +15,7 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.dynamics.contact import resistance
+from frictionlab.numerics.linalg import eliminate
 from frictionlab.quantities import Floats
 
 STAGES = 5
@@ -204,37 +205,6 @@ def _assemble(width: float, n: int, work: PanelRoom) -> None:
                     same = 1.0 if i == j and row == column else 0.0
                     slope = work.slope[j, row, column]
                     work.matrix[i * n + row, j * n + column] = same - width * MATRIX[i, j] * slope
-
-
-@inner
-def eliminate(matrix: Any, right: Any) -> None:
-    """Gaussian elimination with partial pivoting: ``right`` [n, columns] becomes the solution, in place."""
-    n, columns = matrix.shape[0], right.shape[1]
-    # Row pivots: an implicit step over a stiff layer has rows of very different size.
-    for k in range(n):
-        pivot = k
-        for row in range(k + 1, n):
-            if abs(matrix[row, k]) > abs(matrix[pivot, k]):
-                pivot = row
-        if pivot != k:
-            for column in range(n):
-                matrix[k, column], matrix[pivot, column] = matrix[pivot, column], matrix[k, column]
-            for column in range(columns):
-                right[k, column], right[pivot, column] = right[pivot, column], right[k, column]
-        for row in range(k + 1, n):
-            factor = matrix[row, k] / matrix[k, k]
-            if factor != 0.0:
-                for column in range(k + 1, n):
-                    matrix[row, column] -= factor * matrix[k, column]
-                for column in range(columns):
-                    right[row, column] -= factor * right[k, column]
-    # Back substitution, a right side at a time.
-    for column in range(columns):
-        for row in range(n - 1, -1, -1):
-            total = right[row, column]
-            for k in range(row + 1, n):
-                total -= matrix[row, k] * right[k, column]
-            right[row, column] = total / matrix[row, row]
 
 
 @inner

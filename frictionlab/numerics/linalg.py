@@ -87,6 +87,37 @@ def solve_linear(matrix: Any, right: Any) -> None:
         right[row] = right[row] / matrix[row, row]
 
 
+@inner
+def eliminate(matrix: Any, right: Any) -> None:
+    """Gaussian elimination with partial pivoting: ``right`` [n, columns] becomes the solution, in place."""
+    n, columns = matrix.shape[0], right.shape[1]
+    # Row pivots: an implicit step over a stiff layer has rows of very different size.
+    for k in range(n):
+        pivot = k
+        for row in range(k + 1, n):
+            if abs(matrix[row, k]) > abs(matrix[pivot, k]):
+                pivot = row
+        if pivot != k:
+            for column in range(n):
+                matrix[k, column], matrix[pivot, column] = matrix[pivot, column], matrix[k, column]
+            for column in range(columns):
+                right[k, column], right[pivot, column] = right[pivot, column], right[k, column]
+        for row in range(k + 1, n):
+            factor = matrix[row, k] / matrix[k, k]
+            if factor != 0.0:
+                for column in range(k + 1, n):
+                    matrix[row, column] -= factor * matrix[k, column]
+                for column in range(columns):
+                    right[row, column] -= factor * right[k, column]
+    # Back substitution, a right side at a time.
+    for column in range(columns):
+        for row in range(n - 1, -1, -1):
+            total = right[row, column]
+            for k in range(row + 1, n):
+                total -= matrix[row, k] * right[k, column]
+            right[row, column] = total / matrix[row, row]
+
+
 SQUARINGS = 6
 """Of a matrix, for the bound on its spectral radius: the 64th root of its 64th power's norm is at most a few percent
 too large."""

@@ -16,7 +16,6 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.dynamics.motion import belt_path, reference_velocity, span, swing_of
-from frictionlab.dynamics.radau_panel import eliminate
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, write_orbit
 from frictionlab.methods.periodic.continuation import Curve, Wanted
@@ -40,7 +39,7 @@ from frictionlab.methods.periodic.maps.polar_step import DIRECTIONS, SlipPlace
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
 from frictionlab.methods.periodic.period_map import pack, unpack
 from frictionlab.methods.periodic.plateau import plateau
-from frictionlab.numerics.linalg import copy, multiply, norm
+from frictionlab.numerics.linalg import copy, eliminate, multiply, norm
 from frictionlab.orbit.recorder import Track, grown, track_of
 from frictionlab.scene.body import BodyNumbers
 

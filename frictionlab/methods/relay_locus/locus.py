@@ -29,6 +29,7 @@ from frictionlab.methods.relay_locus.response import (
     wrapped,
 )
 from frictionlab.methods.relay_locus.rest_rule import RestRule
+from frictionlab.numerics.linalg import eliminate
 
 MOST_INSTANTS = 96
 
@@ -210,36 +211,6 @@ def row_of_rest(setting: LocusSetting, motion: Instants, j: int, where: Any, row
 
 
 @inner
-def solve_columns(matrix: Any, right: Any) -> None:
-    """Gaussian elimination with row pivots, in place, of a system with many right sides."""
-    n, m = matrix.shape[0], right.shape[1]
-    for pivot in range(n):
-        best = pivot
-        for row in range(pivot + 1, n):
-            if abs(matrix[row, pivot]) > abs(matrix[best, pivot]):
-                best = row
-        if best != pivot:
-            for column in range(n):
-                matrix[pivot, column], matrix[best, column] = matrix[best, column], matrix[pivot, column]
-            for column in range(m):
-                right[pivot, column], right[best, column] = right[best, column], right[pivot, column]
-        source, source_right = matrix[pivot], right[pivot]
-        for row in range(pivot + 1, n):
-            target, target_right = matrix[row], right[row]
-            factor = target[pivot] / source[pivot]
-            for column in range(pivot + 1, n):
-                target[column] = target[column] - factor * source[column]
-            for column in range(m):
-                target_right[column] = target_right[column] - factor * source_right[column]
-    for row in range(n - 1, -1, -1):
-        for k in range(row + 1, n):
-            for column in range(m):
-                right[row, column] = right[row, column] - matrix[row, k] * right[k, column]
-        for column in range(m):
-            right[row, column] = right[row, column] / matrix[row, row]
-
-
-@inner
 def newton_system(setting: LocusSetting, motion: Instants, matrix: Any, residual: Any) -> None:
     """Friction in all rests, for these instants; what is left at every instant, and its derivatives by them."""
     of, rule, n, count = setting.response, setting.rule, setting.rule.nodes.size, motion.times.size
@@ -255,7 +226,7 @@ def newton_system(setting: LocusSetting, motion: Instants, matrix: Any, residual
     if resting > 0:
         rows = np.empty((resting * n, resting * n))
         rest_rows(setting, motion, rests, rows, answer)
-        solve_columns(rows, answer)
+        eliminate(rows, answer)
         for p in range(resting):
             for i in range(n):
                 motion.friction[rests[p], i] = answer[p * n + i, 0]

@@ -25,8 +25,9 @@ from frictionlab.dynamics.motion import (
     restoring_force,
     swing_of,
 )
-from frictionlab.dynamics.radau_panel import MATRIX, NODES, STAGES, WEIGHTS, eliminate
+from frictionlab.dynamics.radau_panel import MATRIX, NODES, STAGES, WEIGHTS
 from frictionlab.methods.periodic.case import Case
+from frictionlab.numerics.linalg import eliminate
 from frictionlab.quantities import Floats
 
 DIRECTIONS = 4

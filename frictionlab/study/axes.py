@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from frictionlab.columns import BELT_SPEEDS
 from frictionlab.scene.waveforms import Form
 
 GridValue = float | str | Form
@@ -37,6 +38,11 @@ class Axis:
     def is_of_scene(self) -> bool:
         """Whether it varies the scene, be it together with laws."""
         return any(path.startswith(SCENE) for path in self.values)
+
+    @property
+    def is_of_speed(self) -> bool:
+        """Whether belt speed alone varies along it."""
+        return len(self.values) == 1 and not self.values.keys().isdisjoint(BELT_SPEEDS)
 
     def thinned(self) -> Axis:
         """Every second place, and the last."""

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from frictionlab import columns
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import Mistake, StudyError
@@ -247,8 +246,7 @@ class StudyGrid:
     @cached_property
     def speed_axis(self) -> Axis | None:
         """That along which belt speed alone varies: of curves."""
-        alone = [axis for axis in self.axes if len(axis.values) == 1]
-        return next((axis for axis in alone if not axis.values.keys().isdisjoint(columns.BELT_SPEEDS)), None)
+        return next((axis for axis in self.axes if axis.is_of_speed), None)
 
     def own_axes(self, choice: LawChoice) -> tuple[Axis, ...]:
         """Those along which this law varies, and the scene does not."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from frictionlab.columns import BELT_SPEEDS, CURVE_MEASURES
+from frictionlab.columns import CURVE_MEASURES
 from frictionlab.mistakes.notes import Notes
 from frictionlab.study.axes import FRICTION, SCENE, Axis, axes_of
 from frictionlab.study.grid import StudyGrid
@@ -26,7 +26,7 @@ def read_boundaries(given: Any, sweeps: Sweeps, laws: int, notes: Notes) -> dict
         numbers = [notes.number(level, (BOUNDARIES_KEY, measure)) for level in levels]
         found[measure] = tuple(level for level in numbers if level is not None)
     axes = axes_of(sweeps.sweep, sweeps.links)
-    speeds = [axis for axis in axes if _is_of_speed(axis)]
+    speeds = [axis for axis in axes if axis.is_of_speed]
     if read and (len(speeds) != 1 or len(axes) != 3 or not all(map(_is_number, axes))):
         notes.add((BOUNDARIES_KEY,), f"{_NEEDED}; swept here: {', '.join(sweeps.sweep) or 'nothing'}")
     elif read and laws > 1 and any(not axis.is_of_scene for axis in axes):
@@ -36,7 +36,7 @@ def read_boundaries(given: Any, sweeps: Sweeps, laws: int, notes: Notes) -> dict
 
 def swept_numbers(study: StudyGrid) -> tuple[Axis, Axis]:
     """The two axes of a study that has boundaries beside that of belt speed."""
-    one, other = (axis for axis in study.axes if not _is_of_speed(axis))
+    one, other = (axis for axis in study.axes if not axis.is_of_speed)
     return one, other
 
 
@@ -51,11 +51,7 @@ def levels_told(boundaries: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
     return {name: levels[0] if len(levels) == 1 else list(levels) for name, levels in boundaries.items()}
 
 
-def _is_of_speed(axis: Axis) -> bool:
-    return len(axis.values) == 1 and not axis.values.keys().isdisjoint(BELT_SPEEDS)
-
-
 def _is_number(axis: Axis) -> bool:
     numbers = all(isinstance(value, float | int) for values in axis.values.values() for value in values)
     alone = len(axis.values) == 1 and next(iter(axis.values)) != FRICTION
-    return _is_of_speed(axis) or (numbers and alone and len(axis) > 1)
+    return axis.is_of_speed or (numbers and alone and len(axis) > 1)

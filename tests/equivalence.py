@@ -25,6 +25,7 @@ import frictionlab as fl
 from frictionlab.charts.maps import cell_edges
 from frictionlab.charts.sheet import NO_HEADING, Sheet
 from frictionlab.charts.style import CYCLE, STYLE, write_figure
+from frictionlab.fitting.equivalent import Norm
 from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudinal, mean_soft_dahl
 
 FIGURES = Path(__file__).parents[1] / "docs" / "figures"
@@ -96,13 +97,13 @@ def nearest(curve: NDArray[np.float64], norm: str, count: int = 800) -> Nearest:
     return Nearest(float(known[best]), float(size(outside).min()), float(softness[best]))
 
 
-def other_body(frequency: float, ratio: float, softness: float, norm: str) -> fl.Equivalent:
+def other_body(frequency: float, ratio: float, softness: float, norm: Norm) -> fl.Equivalent:
     """The Coulomb body of another frequency and damping that is nearest to this body on a Dahl contact."""
     scene = body(frequency, ratio)
     law = fl.Dahl(mu=MU, presliding_length=softness * slip_of(scene)[1])
     free = {"scene.drive.frequency": (0.5 * frequency, 2 * frequency), "scene.damping_ratio": (0.001, 1.0)}
     speeds = SHARES[4::5] * v_lin(scene)
-    return fl.equivalent((scene, law), (scene, COULOMB, free), speeds, norm=norm, starts=4)  # type: ignore[arg-type]
+    return fl.equivalent((scene, law), (scene, COULOMB, free), speeds, norm=norm, starts=4)
 
 
 FREQUENCIES, RATIOS = np.geomspace(0.25, 4, 41), np.linspace(0.05, 1.2, 24)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from equivalence import (
@@ -19,6 +21,7 @@ from equivalence import (
 )
 
 import frictionlab as fl
+from frictionlab.fitting.equivalent import Norm
 
 COUNT = 60
 
@@ -27,16 +30,16 @@ def curve_of(scene: fl.Scene) -> np.ndarray:
     return means(scene, COULOMB, SHARES * v_lin(scene))
 
 
-def nearest_found(scene: fl.Scene, norm: str, wide: bool = False) -> fl.Equivalent:
+def nearest_found(scene: fl.Scene, norm: Norm, wide: bool = False) -> fl.Equivalent:
     """By ``fl.equivalent``; wide: the amplitude of the slip is free, too."""
     slip, stroke = slip_of(scene)
-    free: dict[str, object] = {
+    free: dict[str, Any] = {
         "presliding_length": {"from": 1e-4 * stroke, "to": 1e2 * stroke, "spacing": "log"}
     }
     if wide:
         free["scene.slip.velocity_amplitude"] = (0.5 * v_lin(scene), 3 * v_lin(scene))
     among = slip, fl.Dahl(mu=MU, presliding_length=stroke), free
-    return fl.equivalent((scene, COULOMB), among, SHARES * v_lin(scene), norm, starts=2)  # type: ignore[arg-type]
+    return fl.equivalent((scene, COULOMB), among, SHARES * v_lin(scene), norm, starts=2)
 
 
 @pytest.mark.parametrize("norm", ["largest", "rms"])

@@ -204,8 +204,9 @@ def test_an_undriven_body_slides_or_sticks_as_its_integration_says(speed: float)
         def stops(tau: float, now: Any) -> float:
             return float(now[1])
 
-        stops.terminal, stops.direction = True, -side  # type: ignore[attr-defined]
-        x = solve_ivp(rates, (0, 9), [x, side * 1e-13], "DOP853", events=stops, rtol=1e-12, atol=1e-13).y[
+        event: Any = stops
+        event.terminal, event.direction = True, -side
+        x = solve_ivp(rates, (0, 9), [x, side * 1e-13], "DOP853", events=event, rtol=1e-12, atol=1e-13).y[
             0, -1
         ]
         side = -side

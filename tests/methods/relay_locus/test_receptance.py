@@ -113,7 +113,7 @@ def followed(load, limit, frequency, belt_speed, periods=45, steps=400):
             if sign * (ahead[1] - belt_speed) > 0.0:
                 impulse, state = impulse + h * state[6], ahead
                 continue
-            part = brentq(lambda r: (expm(flow * r) @ state)[1] - belt_speed, 0.0, h, xtol=1e-15)  # noqa: B023
+            part = brentq(lambda r, at: (expm(flow * r) @ at)[1] - belt_speed, 0.0, h, (state,), xtol=1e-15)
             state, impulse = expm(flow * part) @ state, impulse + part * state[6]
             state[6] = -state[6]
             impulse, state = impulse + (h - part) * state[6], expm(flow * (h - part)) @ state

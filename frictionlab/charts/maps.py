@@ -137,7 +137,6 @@ class MapFigure:
             given = {name: value for name, value in picture.panel if value is not None}
             found = np.array([self.v_lin(given | {self.over[1]: float(at)}) for at in fine])
             x, y = (found, fine) if np.isfinite(found).any() else (x, y)
-        axes.autoscale(False)
         axes.plot(x, y, color="white", linestyle="dashed", linewidth=1.1, path_effects=[DARK_EDGE])
 
     def _solved_lines(self, picture: CurveData, column: str) -> pd.DataFrame:
@@ -234,6 +233,7 @@ def _draw_shades(axes: Axes, grid: MapValues, norm: Normalize) -> QuadMesh:
     for values, scale in ((grid.x, axes.set_xscale), (grid.y, axes.set_yscale)):
         if is_logarithmic(values):
             scale("log")
+    axes.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
     return mesh
 
 

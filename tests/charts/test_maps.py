@@ -118,6 +118,8 @@ def test_more_curves_than_lines_can_tell_apart_are_a_map_with_v_lin_in_it() -> N
     np.testing.assert_allclose(line.get_xdata(), 2.0 * np.asarray(line.get_ydata()))
     assert legend_of(figure) == [r"belt speed $V_\mathrm{lin}$"]
     assert len(drawn(along_speed(12)).axes[0].lines) == 12
+    of_error = drawn(along_speed(13).assign(error=0.05)).axes[2]  # after the bar of the mean
+    assert [*of_error.get_xlim(), *of_error.get_ylim()] == pytest.approx([0.5, 9.5, 0.95, 2.25])
 
 
 def test_v_lin_is_drawn_from_its_formula_between_the_points() -> None:

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -128,7 +129,7 @@ def make(exhibit: Exhibit) -> None:
 
 
 def index(shown: list[Exhibit]) -> str:
-    """The first page: the pictures of each group, then the studies in SI units with what they found."""
+    """The first page: the pictures of each group, then what the other studies found."""
     names = "\n".join([*(f"../{page}" for page in FOUND), *(exhibit.name for exhibit in shown)])
     found = ", ".join(f"[{title}](../{page}.md)" for page, title in FOUND.items())
     groups = {exhibit.group: [each for each in shown if each.group == exhibit.group] for exhibit in shown}
@@ -147,25 +148,33 @@ What have others computed? Each picture leads to a page with the answer, the stu
 ```
 
 {chr(10).join(sections)}
-{applications()}"""
+{more(shown)}"""
 
 
-def applications() -> str:
-    """Of every study in SI units: a link, and its title, which is the finding."""
-    studies = {path: YAML(typ="safe").load(path) for path in sorted((STUDIES / "si").glob("*.yaml"))}
+def table_of(folder: str, left_out: Sequence[str] = ()) -> str:
+    """Of every study in a folder but those left out: a link, and its title, which is the finding."""
+    studies = {path: YAML(typ="safe").load(path) for path in sorted((STUDIES / folder).glob("*.yaml"))}
     rows = [
-        f"| [{path.stem.replace('_', ' ')}](../../studies/si/{path.name}) | {read['title']} |"
+        f"| [{path.stem.replace('_', ' ')}](../../studies/{folder}/{path.name}) | {read['title']} |"
         for path, read in studies.items()
+        if path.stem not in left_out
     ]
-    return f"""## More applications in SI units
+    return "\n".join(["| study | finding |", "|---|---|", *rows])
+
+
+def more(shown: list[Exhibit]) -> str:
+    """The studies that have no page: others' models against their formulas, and those in SI units."""
+    return f"""## Others' models against their formulas
+
+{table_of("literature", [exhibit.name for exhibit in shown])}
+
+## More applications in SI units
 
 Studies as one writes them from the table of a paper, with units. Each names the paper that its model is from and
 says which numbers are only typical; what it expects was found a second way too. `frictionlab run studies/si` runs
 all of them.
 
-| study | finding |
-|---|---|
-{chr(10).join(rows)}
+{table_of("si")}
 """
 
 

@@ -123,7 +123,8 @@ def make(exhibit: Exhibit) -> None:
         )
         drawn = [name for name in FIGURE_NAMES if Path(folder, "run", "figures", f"{name}.svg").exists()]
         figure = Path(folder, "run", "figures", f"{finding or drawn[0]}.svg").read_text()
-    lines = [line for line in done.stdout.splitlines()[1:] if not line.startswith(("model ", "table in "))]
+    left_out = "model ", "words of models", "table in "
+    lines = [line for line in done.stdout.splitlines()[1:] if not line.startswith(left_out)]
     (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(figure)
     (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page(exhibit.excerpt("\n".join(lines).strip())))
 

@@ -14,7 +14,7 @@ from frictionlab.quantities import Floats
 from frictionlab.report.facts import Facts
 from frictionlab.report.findings import above_tolerance, place_of, with_remark
 from frictionlab.report.shapes import shape_sentence
-from frictionlab.report.tables import begun, listed, named, settings, the
+from frictionlab.report.tables import begun, listed, minus, named, settings, the
 from frictionlab.results.pairs import Difference, best_rows
 from frictionlab.results.ranking import NOBODY, Ranking, ranking_of
 from frictionlab.results.table import swept_inputs
@@ -185,13 +185,17 @@ class _Ranked(NamedTuple):
             against = names.index(self.run.figures.reference)
         ends = self.ranking.widest(self.along, MOST_STRETCHES, against)
         begin = ": " if against is None else f"; furthest from {escape(names[against])}: "
-        return Markup(begin) + Markup("; ").join(self.apart(*each) for each in ends)
+        pairs = [None, *((high, low) for _, high, low in ends)]
+        told = [self.apart(*each, again=each[1:] == last) for each, last in zip(ends, pairs, strict=False)]
+        return Markup(begin) + Markup("; ").join(told)
 
-    def apart(self, at: int, high: int, low: int) -> Markup:
-        """How far one is above another at a point."""
+    def apart(self, at: int, high: int, low: int, again: bool = False) -> Markup:
+        """How far one is above another at a point; who they are is not said again."""
         mean, error = self.ranking.mean[at], self.ranking.error[at]
         far = with_error(float(mean[high] - mean[low]), float(error[high] + error[low]), IN_SHORT)
         where = _at(self.ranking.points.iloc[at].to_dict())
+        if again:
+            return Markup("{} at {}").format(far, where)
         return Markup("{} is up to {} above {}, at {}").format(self.name(high), far, self.name(low), where)
 
     def where(self, start: int, stop: int) -> Markup:
@@ -259,7 +263,7 @@ def _means_at(
     """Of some rows the mean with its error, and the values of these inputs."""
     told: list[str | Markup] = []
     for _, row in rows.iloc[places].iterrows():
-        told.append(with_error(float(row["mean_friction"]), float(row["error"]), digits))
+        told.append(minus(with_error(float(row["mean_friction"]), float(row["error"]), digits)))
         told.append(_at({name: row[name] for name in names}))
     return told
 

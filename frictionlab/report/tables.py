@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
@@ -16,6 +17,8 @@ SHORT_SETTING = 32
 """Letters of a setting that no line ends in."""
 MOST_ROWS = 200
 """Rows of one table on a page; how many more there are is said below it."""
+_HYPHEN = re.compile(r"(?<![\w.])-(?=\d)")
+"""Before a number; that of a power of ten stays, as programs read and write it."""
 
 
 class Grid(NamedTuple):
@@ -43,9 +46,8 @@ def grid(
     left = (len(rows) if isinstance(rows, list) else total) - len(shown)
     kept = [place for place in range(len(head)) if any(row[place] for row in shown)]
     below = f"... and {left} more {what}, all of them in {file}" if left else ""
-    return Grid(
-        caption, [head[place] for place in kept], [[row[place] for place in kept] for row in shown], below
-    )
+    written = [[minus(row[place]) for place in kept] for row in shown]
+    return Grid(caption, [head[place] for place in kept], written, below)
 
 
 def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
@@ -61,13 +63,18 @@ def setting(name: str, value: Any, digits: int = 6) -> Markup:
     return Markup('<span class="short">{}</span>').format(told) if short else told
 
 
-def number(value: Any, digits: int = 6) -> str:
+def number(value: Any, digits: int = 6) -> Cell:
     """A number to so many digits; nothing for one that does not apply."""
     if isinstance(value, str):
         return value
     if value is None or pd.isna(value):
         return ""
-    return f"{value:.{digits}g}"
+    return minus(f"{value:.{digits}g}")
+
+
+def minus(text: Cell) -> Cell:
+    """Words with a minus, not a hyphen, before their numbers; HTML as it is."""
+    return text if isinstance(text, Markup) else _HYPHEN.sub("\N{MINUS SIGN}", text)
 
 
 def size(value: float) -> str:

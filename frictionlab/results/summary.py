@@ -44,6 +44,7 @@ def alike(sentences: Iterable[str]) -> str:
 
 
 MOST_REASONS = 10
+WORDS_OF_MODELS = "words of models in full: frictionlab columns"
 CURVES_TOLD = 20
 """Curves of a run that are told line by line."""
 
@@ -93,7 +94,8 @@ def _models(table: pd.DataFrame) -> dict[str, int]:
 def _model_lines(table: pd.DataFrame) -> list[str]:
     models = _models(table)
     groups = {number: [model for model in models if models[model] == number] for number in models.values()}
-    return [f"model {number}: {alike(group)}" for number, group in groups.items()]
+    told = [f"model {number}: {alike(group)}" for number, group in groups.items()]
+    return [*told, WORDS_OF_MODELS] if told else []
 
 
 def _curve_line(inputs: dict[str, Any], rows: RowArrays, models: dict[str, int]) -> tuple[str, ...]:

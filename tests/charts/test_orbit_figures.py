@@ -99,6 +99,18 @@ def test_time_runs_in_drive_periods_and_constant_friction_is_level() -> None:
     assert np.ptp(friction.lines[0].get_ydata()) == 0.0
 
 
+def test_time_in_seconds_ends_after_the_last_sample() -> None:
+    def in_si(rows: Sequence[int]) -> pd.DataFrame:
+        found = orbits_of(rows).assign(tau_s=lambda each: 2.0 * each["tau"])
+        return found.assign(x1_m=found["x1"], v1_m_per_s=found["v1"], v2_m_per_s=0.0, load_N=0.0)
+
+    undriven = TABLE.drop(columns="scene.drive.frequency")
+    velocity, *_ = of_orbits("time_series", undriven, orbits=in_si).axes
+
+    time = velocity.lines[0].get_xdata()
+    np.testing.assert_allclose(np.diff(time), 8.0 * np.pi / OMEGA / SAMPLES)
+
+
 def test_beside_the_velocity_are_that_across_the_belt_and_the_load() -> None:
     def planar(rows: Sequence[int]) -> pd.DataFrame:
         found = orbits_of(rows)

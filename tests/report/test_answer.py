@@ -109,6 +109,15 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
         ],
         "No law is highest everywhere; furthest from Coulomb: lugre is up to 0.2 above Coulomb, at vb = 1.",
     ),
+    "whoever is furthest at several settings is named once": (
+        [
+            curve(law, [each * share for each in means], **{FREQUENCY: share})
+            for share in (1.0, 2.0)
+            for law, means in {"coulomb": [0.1, 0.4] * 3, "dahl": [0.3, 0.1] * 3, "b": [0.2] * 6}.items()
+        ],
+        "No law is highest everywhere; furthest from Coulomb: "
+        "Coulomb is up to 0.3 above dahl, at vb = 2, Ω = 1; 0.6 at vb = 2, Ω = 2.",
+    ),
     "laws that do not differ by more than their errors are the same": (
         [curve("coulomb", [0.1, 0.2], error=0.02), curve("dahl", [0.11, 0.19], error=0.02)],
         "Mean friction is the same within errors for Coulomb and dahl at all 2 belt speeds.",
@@ -149,7 +158,7 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
     ),
     "a mean that changes its sign does so between neighbours": (
         [curve("coulomb", [-0.1, -0.05, 0.2])],
-        "...rises from -0.1 at vb = 1 to 0.2 at vb = 3, through zero between vb = 2 and vb = 3.",
+        "...rises from \N{MINUS SIGN}0.1 at vb = 1 to 0.2 at vb = 3, through zero between vb = 2 and vb = 3.",
     ),
     "a reduced model is judged by the full answers beside it": (
         ROUGH,

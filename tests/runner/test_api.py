@@ -558,4 +558,5 @@ def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> No
         f"model 1: closed form: belt speed >= 0 ... {len(models) - 2}",
         "model 2: another",
     ]
+    assert lines.count("words of models in full: frictionlab columns") == 1
     assert any(line.endswith(" 1, 2") for line in lines)

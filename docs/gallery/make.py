@@ -1,6 +1,7 @@
 """Run the studies of the gallery and write its pages and figures: ``python docs/gallery/make.py [STUDY ...]``.
 
-About fifteen minutes, and more for kernels on a machine that has none. The site shows what is kept here.
+A new study wants a page with its question, how to read it and what comes out, and a line ``- [](NAME.md)`` in a group
+of ``index.md``. About fifteen minutes, and more for kernels on a machine that has none. The site shows what is kept.
 """
 
 from __future__ import annotations
@@ -29,8 +30,15 @@ FOUND = {
 COMMAND = Path(sys.executable).parent / "frictionlab"
 
 
+SAID = re.compile(
+    r"# (?P<question>.+)\n[\s\S]*?\*\*How to read it\.\*\* (?P<read>.+)\n\n\*\*What comes out\.\*\* (?P<found>.+)\n"
+    r"(?:[\s\S]*<!-- rows: (?P<rows>.+) -->)?"
+)
+"""What a page is written anew from: of a new one its first lines are enough."""
+
+
 class Exhibit(NamedTuple):
-    """A study in the gallery: its group, name and title, and what is said of it.
+    """A study in the gallery: its group, name and title, and what its page says of it.
 
     rows: regular expression of the printed lines that answer the question; all of them where left out.
     """
@@ -41,7 +49,7 @@ class Exhibit(NamedTuple):
     question: str
     read: str
     found: str
-    rows: str = ""
+    rows: str | None = None
 
     @property
     def study(self) -> str:
@@ -51,6 +59,7 @@ class Exhibit(NamedTuple):
     def page(self, printed: str) -> str:
         """The page of the study; printed: what the command says."""
         study = f"../../{self.study}"
+        rows = f"<!-- rows: {self.rows} -->\n\n" if self.rows else ""
         return f"""# {self.question}
 
 ![{self.title}](figures/{self.name}.svg)
@@ -67,7 +76,7 @@ frictionlab run {self.study}
 
 prints
 
-```text
+{rows}```text
 {printed}
 ```
 
@@ -88,7 +97,7 @@ from [{self.name}.yaml]({study}):
         counts, table, *reasons = "\n".join(body).split("\n\n")
         head, *lines = (line[: table.index("  model")].rstrip() for line in table.splitlines())
         lines += "\n".join(reasons).splitlines()
-        kept = [line for line in lines if re.search(self.rows, line)]
+        kept = [line for line in lines if re.search(self.rows or "", line)]
         more = [f"... {len(lines) - len(kept)} more lines; every point is in runs/{self.name}/results.csv"]
         return "\n".join([counts, "", head, *kept, *(more if len(kept) < len(lines) else []), expected])
 
@@ -100,14 +109,23 @@ def study_named(name: str) -> Path:
 
 
 def exhibits() -> list[Exhibit]:
-    """Every study that has words, in their order."""
+    """Every page that the first page leads to, by group, in their order."""
     yaml = YAML(typ="safe")
-    words = yaml.load(GALLERY / "words.yaml")
+    groups = re.split(r"^## (.*)\n", (GALLERY / "index.md").read_text(), flags=re.MULTILINE)[1:]
     return [
-        Exhibit(group, name, yaml.load(study_named(name))["title"], **said)
-        for group, studies in words.items()
-        for name, said in studies.items()
+        Exhibit(group, name, yaml.load(study_named(name))["title"], **said_of(name))
+        for group, inside in zip(groups[::2], groups[1::2], strict=True)
+        for name in re.findall(r"^- .*\]\((\w+)\.md\)$", inside, re.MULTILINE)
     ]
+
+
+def said_of(name: str) -> dict[str, str]:
+    """The words of a page. Raises ValueError where it has no question, no way to read it or no answer."""
+    if (said := SAID.match((GALLERY / f"{name}.md").read_text())) is None:
+        raise ValueError(
+            f"{name}.md: wants '# question', '**How to read it.** ...' and '**What comes out.** ...'"
+        )
+    return said.groupdict()
 
 
 def make(exhibit: Exhibit) -> None:

@@ -78,7 +78,7 @@ ARROWS = {
         "results": "columns laws methods.base orbit quantities registry scene shape study printable theory units",
         "runner": (
             "columns compile faults laws methods.base methods.under_way mistakes onsets orbit printable "
-            "quantities registry results scene study theory units"
+            "quantities registry results scene shape study theory units"
         ),
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
         "charts": "columns printable scene study theory units",

@@ -56,7 +56,7 @@ def curve_table(
     several = (table["status"] == "not_unique").to_numpy()
     inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]
     read = [
-        _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws), given.get("method") in reduced)
+        measures(_rows(numbers[found[usable[found]]]), loads(given, laws), given.get("method") in reduced)
         | _not_unique(numbers[found[several[found]], 0])
         for found, given in zip(places, inputs, strict=True)
     ]
@@ -98,7 +98,7 @@ def _rows(numbers: Floats) -> Rows:
     return Rows(*(np.ascontiguousarray(column) for column in rising.T))
 
 
-def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
+def loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
     """The loads on the body, from the inputs of a curve."""
 
     def value(name: str) -> float:
@@ -168,8 +168,8 @@ def _law(given: Mapping[str, Any], laws: registry.Laws) -> FrictionLaw | None:
     return law.model_validate(values).under_load(float(given["scene.normal_load"]))
 
 
-def _measures(rows: Rows, loads: Loads, of_model: bool) -> dict[str, Any]:
-    """The measures of a curve that can be determined, and the reason why others cannot."""
+def measures(rows: Rows, loads: Loads, of_model: bool, even: bool = False) -> dict[str, Any]:
+    """The measures of a curve that can be determined, and why others cannot. even: as ``shape_of`` has it."""
     found: dict[str, Any] = {}
     if of_model and rows.error.size:
         found["model_distance"] = float(rows.error.max())
@@ -182,7 +182,8 @@ def _measures(rows: Rows, loads: Loads, of_model: bool) -> dict[str, Any]:
         found |= _entry("reversal_end", end)
         start = start_friction(rows, loads)
         found |= _entry("shape_start", start)
-        shape = shape_of(FrictionCurve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked))
+        read = FrictionCurve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked)
+        shape = shape_of(read, even)
     except UnreadableCurve as problem:
         return found | {"reason": str(problem)}
     return found | _shape(shape)

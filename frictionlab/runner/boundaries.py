@@ -2,120 +2,128 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import BOUNDARIES, INPUTS, SHAPE
-from frictionlab.onsets.level_lines import LevelLine, level_lines
+from frictionlab import registry
+from frictionlab.columns import BOUNDARIES, INPUTS
+from frictionlab.onsets.level_lines import LevelLine, OfTwoNumbers, level_lines
 from frictionlab.quantities import Floats
 from frictionlab.results.curve_table import curve_inputs
-from frictionlab.results.run import Run
-from frictionlab.study import Study
-from frictionlab.study.axes import Axis
-from frictionlab.study.level_lines import column_swept, swept_numbers
+from frictionlab.runner.curve_measures import measures_of
+from frictionlab.runner.workforce import Workforce, workforce
+from frictionlab.study import Study, StudyCurve
+from frictionlab.study.axes import Axis, GridValue
+from frictionlab.study.level_lines import columns_swept, swept_numbers
+from frictionlab.study.parts import LawChoice
 
 
-def boundary_table(study: Study, curves: pd.DataFrame, solve: Callable[[Study], Run]) -> pd.DataFrame:
+def boundary_table(study: Study, curves: pd.DataFrame, laws: registry.Laws) -> pd.DataFrame:
     """One row per place of every line, in its order; curves: those of the run, whose grid the lines are sought on.
 
-    solve: a study of curves between those of the grid.
+    laws: those that the study may name.
     """
     if not study.boundaries:
         return pd.DataFrame()
-    axes = swept_numbers(study)
-    columns = [column_swept(axis) for axis in axes]
-    alike = [name for name in curve_inputs(curves.columns) if name not in columns]
-    found = [
-        _rows(of_one.iloc[0][alike], measure, level, piece, columns, line, _numbers(axes, line))
-        for _, of_one in curves.groupby([*INPUTS], sort=False)
-        for measure, levels in study.boundaries.items()
-        for level in levels
-        for piece, line in enumerate(_lines(study, axes, of_one, measure, level, solve), 1)
-    ]
-    told = [name for column in columns for name in (column, f"{column}_error")]
-    return (
-        pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=[*alike, *BOUNDARIES, *told])
-    )
+    with workforce(None) as force:
+        return _table(study, curves, force, laws)
 
 
-def _lines(
-    study: Study,
-    axes: tuple[Axis, Axis],
-    curves: pd.DataFrame,
-    measure: str,
-    level: float,
-    solve: Callable[[Study], Run],
-) -> list[LevelLine]:
-    """Those of one law by one method."""
-    law, method = curves.iloc[0]["law"], curves.iloc[0]["method"]
-    alone = replace(
-        study,
-        laws=tuple(each for each in study.laws if each.label == law),
-        methods=tuple(each for each in study.methods if each.label == method),
-        expect=(),
-        boundaries={},
-        columns=(SHAPE,),
-        keep_orbit=None,
-        keep_attractors=None,
-        keep_harmonics=None,
-    )
-    first, second = (column_swept(axis) for axis in axes)
-    grid = curves.pivot(index=second, columns=first, values=measure).to_numpy(dtype=float)
-    along, across = (sorted(next(iter(axis.values.values()))) for axis in axes)
-    if grid.shape != (len(across), len(along)):
-        return []
-
-    def function(places: Floats) -> tuple[Floats, Floats]:
-        different, places_of = np.unique(_at_places(axes, places), axis=0, return_inverse=True)
-        solved = solve(_at(alone, axes, different)).curves
-        values, errors = (solved[name].to_numpy(dtype=float) for name in (measure, f"{measure}_error"))
-        return values[places_of] - level, errors[places_of]
-
-    return level_lines(function, grid - level)
+def _table(study: Study, curves: pd.DataFrame, force: Workforce, laws: registry.Laws) -> pd.DataFrame:
+    inputs, found = curve_inputs(curves.columns), list[pd.DataFrame]()
+    for _, of_one in curves.groupby([*INPUTS], sort=False):
+        sought = _Sought.of(study, of_one)
+        if sought is None:
+            continue
+        told = of_one.iloc[0][[name for name in inputs if name not in sought.columns]].to_dict()
+        for measure, levels in study.boundaries.items():
+            grid, measured = sought.grid(of_one, measure), sought.measured(measure, force, laws)
+            for level in levels:
+                for piece, line in enumerate(level_lines(measured, grid, level), 1):
+                    own = {"measure": measure, "level": level, "piece": piece, "closed": line.closed}
+                    found.append(pd.DataFrame(told | own | sought.numbers(line)))
+    return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=[*inputs, *BOUNDARIES])
 
 
-def _at(study: Study, axes: tuple[Axis, Axis], numbers: Floats) -> Study:
-    """The study with a curve at each of these pairs of numbers [n, 2]."""
-    paths = tuple(path for axis in axes for path in axis.values)
-    pairs = {path: tuple(values.tolist()) for path, values in zip(paths, numbers.T, strict=True)}
-    others = {path: values for path, values in study.sweep.items() if path not in paths}
-    return replace(
-        study,
-        sweep=pairs | others,
-        links=(paths,),
-        ranges={path: each for path, each in study.ranges.items() if path not in paths},
-        chosen=(),
-    )
+class _Along(NamedTuple):
+    """An axis that lines are sought over: its numbers by paths of a study, and by columns of the table of one law.
+
+    They are in the order in which those of the first column rise.
+    """
+
+    paths: dict[str, Floats]
+    columns: dict[str, Floats]
+
+    @classmethod
+    def of(cls, axis: Axis, law: LawChoice) -> _Along | None:
+        """None where no number of this law is swept along it."""
+        columns = columns_swept(axis, law)
+        if not columns:
+            return None
+        rising = np.argsort(np.array(next(iter(columns.values())), dtype=float))
+        told = [
+            {name: np.array(values, dtype=float)[rising] for name, values in each.items()}
+            for each in (axis.values, columns)
+        ]
+        return cls(*told)
 
 
-def _at_places(axes: tuple[Axis, Axis], places: Floats) -> Floats:
-    """The two numbers at places in steps of the grid; between its values they run evenly."""
-    values = [np.sort(np.array(next(iter(axis.values.values())), dtype=np.float64)) for axis in axes]
-    return np.stack(
-        [np.interp(at, np.arange(len(of)), of) for at, of in zip(places.T, values, strict=True)], axis=1
-    )
+class _Sought(NamedTuple):
+    """A study of one law by one method, and the two axes that lines are sought over."""
+
+    study: Study
+    axes: tuple[_Along, _Along]
+
+    @classmethod
+    def of(cls, study: Study, curves: pd.DataFrame) -> _Sought | None:
+        """Those of the curves' law and method; None where an axis does not vary this law."""
+        (law,) = (each for each in study.laws if each.label == curves.iloc[0]["law"])
+        methods = tuple(each for each in study.methods if each.label == curves.iloc[0]["method"])
+        first, second = (_Along.of(axis, law) for axis in swept_numbers(study))
+        alone = replace(study, laws=(law,), methods=methods)
+        return None if first is None or second is None else cls(alone, (first, second))
+
+    @property
+    def columns(self) -> list[str]:
+        """Those of both axes."""
+        return [name for axis in self.axes for name in axis.columns]
+
+    def grid(self, curves: pd.DataFrame, measure: str) -> Floats:
+        """A measure of curves on the grid [second, first number]."""
+        first, second = (next(iter(axis.columns)) for axis in self.axes)
+        return curves.pivot(index=second, columns=first, values=measure).to_numpy(dtype=float)
+
+    def measured(self, measure: str, force: Workforce, laws: registry.Laws) -> OfTwoNumbers:
+        """The measure of curves at places in steps of the grid, and its error."""
+        return lambda places: measures_of(self._curves(places), measure, self.study.tolerance, force, laws)
+
+    def _curves(self, places: Floats) -> list[StudyCurve]:
+        """A curve at each place [n, 2]; between the values of the grid numbers run evenly."""
+        between = {
+            path: tuple(_between(values, places[:, at]).tolist())
+            for at, axis in enumerate(self.axes)
+            for path, values in axis.paths.items()
+        }
+        others = {path: values for path, values in self.study.sweep.items() if path not in between}
+        ranges = {path: each for path, each in self.study.ranges.items() if path not in between}
+        sweep: dict[str, tuple[GridValue, ...]] = {**between, **others}
+        one = replace(self.study, sweep=sweep, links=(tuple(between),), ranges=ranges, chosen=())
+        return list(one.curves())
+
+    def numbers(self, line: LevelLine) -> dict[str, Floats]:
+        """The columns of both axes along a line, each with its error."""
+        found = dict[str, Floats]()
+        for at, axis in enumerate(self.axes):
+            place, error = line.places[:, at], line.errors[:, at]
+            for name, values in axis.columns.items():
+                middle, low, high = (_between(values, place + by * error) for by in (0.0, -1.0, 1.0))
+                found[name] = middle
+                found[f"{name}_error"] = np.maximum(np.abs(high - middle), np.abs(middle - low))
+        return found
 
 
-def _numbers(axes: tuple[Axis, Axis], line: LevelLine) -> Iterator[Floats]:
-    """Each number along a line, and its error."""
-    place, low, high = (_at_places(axes, line.places + by * line.errors) for by in (0.0, -1.0, 1.0))
-    error = np.maximum(np.abs(high - place), np.abs(place - low))
-    for number in range(2):
-        yield from (place[:, number], error[:, number])
-
-
-def _rows(
-    alike: pd.Series,
-    measure: str,
-    level: float,
-    piece: int,
-    columns: list[str],
-    line: LevelLine,
-    numbers: Iterator[Floats],
-) -> pd.DataFrame:
-    told = alike.to_dict() | {"measure": measure, "level": level, "piece": piece, "closed": line.closed}
-    names = [name for column in columns for name in (column, f"{column}_error")]
-    return pd.DataFrame(dict(zip(names, numbers, strict=True))).assign(**told)[[*told, *names]]
+def _between(values: Floats, places: Floats) -> Floats:
+    return np.interp(places, np.arange(len(values)), values)

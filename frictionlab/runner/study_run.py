@@ -229,7 +229,7 @@ class StudyRun:
             gathered.curves,
             lambda: self._onsets(read),
             lambda: boundary_table(
-                study, gathered.curves.iloc[:0] if stopped else gathered.curves, self._solved_apart
+                study, gathered.curves.iloc[:0] if stopped else gathered.curves, self._laws
             ),
             harmonics=None if study.keep_harmonics is None else gathered.harmonics,
         )
@@ -247,7 +247,7 @@ class StudyRun:
             self._computed,
             curves,
             lambda: self._onsets(read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
-            lambda: boundary_table(study, curves, self._solved_apart),
+            lambda: boundary_table(study, curves, self._laws),
             shown,
             counts,
         )

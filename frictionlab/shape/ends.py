@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.quantities import Floats
 from frictionlab.shape.shakedown import Shakedown, largest_magnitude
@@ -89,17 +90,22 @@ def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Estimate, bool]:
     return _bracket_end(rows), False
 
 
+def reverses(rows: Rows) -> NDArray[np.bool_]:
+    """Whether slip reverses or sticks at each of the points."""
+    counted = np.isfinite(rows.reversals)
+    on = (rows.reversals > 0.0) | (rows.stick_fraction > 0.0)
+    return np.where(counted, on, rows.velocity_amplitude > rows.belt_speed)
+
+
 def _bracket_end(rows: Rows) -> Estimate:
     """The end of reversal between two points, where the velocity amplitude of x1 falls below the belt speed."""
-    excess = rows.velocity_amplitude - rows.belt_speed
-    counted = np.isfinite(rows.reversals)
-    reverses = np.where(counted, (rows.reversals > 0.0) | (rows.stick_fraction > 0.0), excess > 0.0)
-    if not reverses.any():
+    excess, on = rows.velocity_amplitude - rows.belt_speed, reverses(rows)
+    if not on.any():
         raise UnreadableCurve(
             "slip reverses at none of the points, so that no end of reversal limits the curve"
         )
-    last = int(np.flatnonzero(reverses)[-1])
-    if last + 1 == reverses.size:
+    last = int(np.flatnonzero(on)[-1])
+    if last + 1 == on.size:
         raise UnreadableCurve(
             f"slip still reverses at the highest belt speed that has a number, {rows.belt_speed[-1]:.6g}"
         )

@@ -61,11 +61,15 @@ class Shape:
         return ("undecided", "convex", "concave")[self.initial.sign]
 
 
-def shape_of(curve: FrictionCurve) -> Shape:
-    """Every measure of a curve with its error. Raises UnreadableCurve."""
+def shape_of(curve: FrictionCurve, even: bool = False) -> Shape:
+    """Every measure of a curve with its error. Raises UnreadableCurve.
+
+    even: whether points are evenly spaced in the angle of the interpolant, so that errors of their spacing at one
+    place do not cancel those at another by chance alone.
+    """
     check_points(curve)
     best = interpolant_of(curve)
-    errors = _point_errors(curve, best), _spacing_errors(curve, best), *_end_errors(curve, best)
+    errors = _point_errors(curve, best), _spacing_errors(curve, best, even), *_end_errors(curve, best)
     area, window_area, half, initial = np.sum(errors, axis=0).tolist()
     above, below = (
         2.0 * float(AREA_WEIGHTS @ np.maximum(side * (best.range - ABSCISSAE), 0.0)) for side in (1, -1)
@@ -132,14 +136,20 @@ def _point_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
     )
 
 
-def _spacing_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
+def _spacing_errors(curve: FrictionCurve, best: Interpolant, even: bool) -> Floats:
     """The distance to the interpolant of every second point; for a local measure the largest distance around it.
 
-    Twice the spacing makes the error of the interpolant at least four times as large.
+    Twice the spacing makes the error of the interpolant at least four times as large. Of points that are even, twice
+    the change of each measure itself.
     """
     every = slice((curve.speed.size - 1) % 2, None, 2)  # keep the last point, the end of the range
     columns = {name: getattr(curve, name)[every] for name in ("speed", "friction", "error")}
     coarse = interpolant_of(replace(curve, **columns))
+    if even:
+        fine, wide = (
+            np.array([_area(at.range), _area(at.window), at.half, at.initial]) for at in (best, coarse)
+        )
+        return 2.0 * np.abs(fine - wide)
     early = ABSCISSAE < 3.0 * STEP
     fine_rise, coarse_rise = float(best.range[early][-1]), float(coarse.range[early][-1])
     rises = min(fine_rise, coarse_rise) > EPSILON  # of the whole rise, which is one

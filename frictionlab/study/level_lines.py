@@ -7,18 +7,17 @@ from typing import Any
 
 from frictionlab.columns import CURVE_MEASURES
 from frictionlab.mistakes.notes import Notes
-from frictionlab.study.axes import FRICTION, SCENE, Axis, axes_of
-from frictionlab.study.grid import StudyGrid
+from frictionlab.study.axes import SCENE, Axis, GridValue, axes_of
+from frictionlab.study.grid import StudyGrid, of_law
+from frictionlab.study.parts import LawChoice
 from frictionlab.study.sweeps import Sweeps
 
 BOUNDARIES_KEY = "boundaries"
-_NEEDED = (
-    "needs the belt speed and two numbers swept, each on its own, the numbers of a scene or of the only law"
-)
+_NEEDED = "needs the belt speed and two numbers swept"
 
 
-def read_boundaries(given: Any, sweeps: Sweeps, laws: int, notes: Notes) -> dict[str, tuple[float, ...]]:
-    """Levels by measure of a curve; mistakes are noted. laws: how many the study has."""
+def read_boundaries(given: Any, sweeps: Sweeps, notes: Notes) -> dict[str, tuple[float, ...]]:
+    """Levels by measure of a curve; mistakes are noted."""
     read = notes.mapping(given, (BOUNDARIES_KEY,), CURVE_MEASURES) or {}
     found = {}
     for measure in (name for name in read if name in CURVE_MEASURES):
@@ -29,8 +28,6 @@ def read_boundaries(given: Any, sweeps: Sweeps, laws: int, notes: Notes) -> dict
     speeds = [axis for axis in axes if axis.is_of_speed]
     if read and (len(speeds) != 1 or len(axes) != 3 or not all(map(_is_number, axes))):
         notes.add((BOUNDARIES_KEY,), f"{_NEEDED}; swept here: {', '.join(sweeps.sweep) or 'nothing'}")
-    elif read and laws > 1 and any(not axis.is_of_scene for axis in axes):
-        notes.add((BOUNDARIES_KEY,), f"{_NEEDED}; the study has {laws} laws and sweeps a number of one")
     return found
 
 
@@ -40,10 +37,10 @@ def swept_numbers(study: StudyGrid) -> tuple[Axis, Axis]:
     return one, other
 
 
-def column_swept(axis: Axis) -> str:
-    """The column of the table that has the number of an axis."""
-    (path,) = axis.values
-    return path if path.startswith(SCENE) else f"law.{path.rpartition('.')[2]}"
+def columns_swept(axis: Axis, law: LawChoice) -> dict[str, tuple[GridValue, ...]]:
+    """The columns of the table that have numbers of an axis in the rows of a law, and these numbers."""
+    own = [(SCENE, axis.of(SCENE)), ("law.", of_law(axis, law))]
+    return {f"{owner}{name}": values for owner, found in own for name, values in found.items()}
 
 
 def levels_told(boundaries: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
@@ -52,6 +49,6 @@ def levels_told(boundaries: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
 
 
 def _is_number(axis: Axis) -> bool:
+    different = all(len(set(values)) == len(axis) for values in axis.values.values())
     numbers = all(isinstance(value, float | int) for values in axis.values.values() for value in values)
-    alone = len(axis.values) == 1 and next(iter(axis.values)) != FRICTION
-    return axis.is_of_speed or (numbers and alone and len(axis) > 1)
+    return axis.is_of_speed or (numbers and different and len(axis) > 1)

@@ -115,7 +115,7 @@ class _StudyReader:
         told["expect"] = expectations(self._tree.get("expect", []), self._table(scene, sweep), self._notes)
         told["columns"] = self._columns(scene)
         if BOUNDARIES_KEY in self._tree:
-            told[BOUNDARIES_KEY] = read_boundaries(self._tree[BOUNDARIES_KEY], sweep, len(laws), self._notes)
+            told[BOUNDARIES_KEY] = read_boundaries(self._tree[BOUNDARIES_KEY], sweep, self._notes)
         if self._notes.all or scene is None:
             return None
         told["code"] = brought.code(choice.kind for choice in laws)

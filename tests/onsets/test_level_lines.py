@@ -69,3 +69,26 @@ def test_errors_cover_what_an_error_of_the_function_moves_the_line_by(
 
 def test_without_a_change_of_sign_there_is_no_line() -> None:
     assert lines_of(lambda x, y: 1.0 + x + y) == []
+
+
+@given(st.floats(3.2, 6.8), st.floats(3.2, 6.8), st.floats(0.12, 0.45))
+def test_a_line_that_crosses_no_edge_of_the_grid_is_seen(x0: float, y0: float, radius: float) -> None:
+    lines = lines_of(lambda x, y: np.hypot(x - x0, y - y0) ** 2 - radius**2)
+
+    assert [line.closed for line in lines] == [True]
+    np.testing.assert_allclose(np.hypot(*(lines[0].places - [x0, y0]).T), radius, atol=1e-6)
+
+
+def test_values_of_the_grid_beside_a_line_are_found_anew_and_places_asked_for_once() -> None:
+    asked: list[tuple[float, ...]] = []
+
+    def function(places: Floats) -> tuple[Floats, Floats]:
+        asked.extend(map(tuple, np.round(places, 12).tolist()))
+        return places[:, 1] - 4.1 - 0.2 * np.sin(places[:, 0]), np.zeros(len(places))
+
+    y = np.repeat(np.arange(9.0), 9).reshape(9, 9)
+    (line,) = level_lines(function, y - 3.3)  # the grid is wrong by 0.8 and 0.2 more
+
+    np.testing.assert_allclose(line.places[:, 1], 4.1 + 0.2 * np.sin(line.places[:, 0]), atol=1e-6)
+    assert {*line.places[[0, -1], 0]} == {0.0, 8.0}
+    assert len(asked) == len(set(asked)) < 25 * len(line.places)

@@ -8,12 +8,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import simpson
 from scipy.optimize import brentq
 
 import frictionlab as fl
 from frictionlab.charts.maps import map_of_curves
+from frictionlab.registry import INSTALLED_LAWS
 from frictionlab.runner.api import with_boundaries
+from frictionlab.runner.curve_measures import measures_of
+from frictionlab.runner.workforce import threads
 from frictionlab.study import StudyError
+from frictionlab.theory import friction_free_velocity
 
 SPEEDS = {"start": 2, "stop": 60, "num": 30}
 DRIVE = fl.Drive(amplitude=10, frequency=1)
@@ -31,22 +36,69 @@ def study(**told: Any) -> fl.Study:
 
 
 def area(load: float, frequency: float) -> float:
+    """The area over the chord by many belt speeds and Simpson's rule in the angle arcsin(v / V_lin)."""
     scene = SCENE.with_(normal_load=load, **{"drive.frequency": frequency})
-    alone = fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": SPEEDS}, columns=["shape"])
-    return float(fl.run(alone).curves["shape_area"].iloc[0])
+    angle = np.linspace(0.0, np.pi / 2, 401)
+    end = friction_free_velocity(scene)
+    found = fl.curve(scene, fl.Coulomb(mu=0.4), end * np.sin(angle[1:]))["mean_friction"]
+    rise = np.concatenate([[0.0], found]) / found.iloc[-1]
+    return float(2.0 * simpson((rise - np.sin(angle)) * np.cos(angle), x=angle))
 
 
-def test_every_place_is_where_a_bisection_of_the_curve_s_measure_is() -> None:
+def test_random_places_are_where_bisections_of_curves_solved_densely_are() -> None:
     found = fl.run(study()).boundaries
 
     assert set(found["piece"]) == {1}
     frequencies = found["scene.drive.frequency"]
     assert (frequencies.min(), frequencies.max()) == (0.9, 1.1)
-    for row in found.iloc[[1, len(found) // 2, -2]].itertuples(index=False):
-        told = dict(zip(found.columns, row, strict=True))
-        root = brentq(area, 5.0, 15.0, args=(told["scene.drive.frequency"],), xtol=1e-9)
-        assert told["scene.normal_load"] == pytest.approx(root, abs=1e-6)
-    assert (found["scene.normal_load_error"] > 0.0).all()
+    for told in found.sample(3, random_state=1).to_dict("records"):
+        root = brentq(area, 5.0, 15.0, args=(told["scene.drive.frequency"],), xtol=1e-6)
+        assert abs(told["scene.normal_load"] - root) <= told["scene.normal_load_error"] < 2e-3
+
+
+def test_a_place_is_the_root_of_the_measure_to_a_millionth() -> None:
+    one = study()
+    told = fl.run(one).boundaries.iloc[2]
+    with threads(1) as force:
+
+        def measured(load: float) -> float:
+            scene = SCENE.with_(normal_load=load, **{"drive.frequency": told["scene.drive.frequency"]})
+            curves = [*fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": SPEEDS}).curves()]
+            return float(measures_of(curves, "shape_area", one.tolerance, force, INSTALLED_LAWS)[0][0])
+
+        assert told["scene.normal_load"] == pytest.approx(brentq(measured, 5.0, 15.0, xtol=1e-9), abs=1e-6)
+
+
+def test_the_end_of_reversal_of_a_law_that_falls_is_found_sharply() -> None:
+    stribeck = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=20)
+    curves = [*fl.Study.of(SCENE, stribeck, sweep={"scene.belt_speed": SPEEDS}).curves()]
+    with threads(1) as force:
+        (end,), (error,) = measures_of(curves, "reversal_end", 1e-8, force, INSTALLED_LAWS)
+
+    def shortfall(speed: float) -> float:
+        orbit = fl.steady_state(SCENE.with_(belt_speed=speed), stribeck).orbit(4000)
+        return float(speed - orbit["v1"].max()) - 1e-3  # of rest and of samples beside the peak
+
+    assert abs(end - brentq(shortfall, 0.5 * end, 1.5 * end, xtol=1e-6)) < 2e-3
+    assert 0.0 < error < 4e-5 * end
+
+
+def test_lines_over_linked_numbers_and_over_friction_are_those_of_the_number_they_stand_for() -> None:
+    at = {"scene.drive.frequency": SWEEP["scene.drive.frequency"], "scene.belt_speed": SPEEDS}
+    both = {"scene.normal_load": [20.0, 10.0, 4.0], "friction": [0.1, 0.4, 1.5]}
+    found = [
+        fl.run(study(sweep=sweep)).boundaries
+        for sweep in (SWEEP, at | {"friction": [0.2, 0.4, 0.6]}, at | {"linked": [both]})
+    ]
+    at_grid = [np.isin(rows["scene.drive.frequency"].round(9), [0.9, 1.0, 1.1]) for rows in found]
+    forces = [
+        (rows["law.mu"] * rows["scene.normal_load"])[there].to_numpy()
+        for rows, there in zip(found, at_grid, strict=True)
+    ]
+
+    assert [len(each) for each in forces] == [3, 3, 3]
+    for each in forces[1:]:
+        np.testing.assert_allclose(np.sort(each), np.sort(forces[0]), rtol=1e-6)
 
 
 def test_at_resonance_the_area_is_zero_where_friction_is_a_third_of_the_load() -> None:
@@ -94,6 +146,10 @@ def test_a_study_says_what_its_lines_are_over() -> None:
         ),
         ({"sweep": {"scene.belt_speed": SPEEDS}}, "needs the belt speed and two numbers swept"),
         ({"sweep": {"friction": [0.1, 0.2]} | SWEEP}, "needs the belt speed and two numbers swept"),
+        (
+            {"sweep": SWEEP | {"scene.normal_load": [5.0]}},
+            "needs the belt speed and two numbers swept",
+        ),
     ],
 )
 def test_what_is_no_boundary_is_said(told: dict[str, Any], said: str) -> None:

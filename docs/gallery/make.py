@@ -32,16 +32,12 @@ COMMAND = Path(sys.executable).parent / "frictionlab"
 
 SAID = re.compile(
     r"# (?P<question>.+)\n[\s\S]*?\*\*How to read it\.\*\* (?P<read>.+)\n\n\*\*What comes out\.\*\* (?P<found>.+)\n"
-    r"(?:[\s\S]*<!-- rows: (?P<rows>.+) -->)?"
 )
 """What a page is written anew from: of a new one its first lines are enough."""
 
 
 class Exhibit(NamedTuple):
-    """A study in the gallery: its group, name and title, and what its page says of it.
-
-    rows: regular expression of the printed lines that answer the question; all of them where left out.
-    """
+    """A study in the gallery: its group, name and title, and what its page says of it."""
 
     group: str
     name: str
@@ -49,17 +45,15 @@ class Exhibit(NamedTuple):
     question: str
     read: str
     found: str
-    rows: str | None = None
 
     @property
     def study(self) -> str:
         """Its file, seen from the project."""
         return study_named(self.name).relative_to(STUDIES.parent).as_posix()
 
-    def page(self, printed: str) -> str:
-        """The page of the study; printed: what the command says."""
+    def page(self) -> str:
+        """The page of the study."""
         study = f"../../{self.study}"
-        rows = f"<!-- rows: {self.rows} -->\n\n" if self.rows else ""
         return f"""# {self.question}
 
 ![{self.title}](figures/{self.name}.svg)
@@ -74,13 +68,7 @@ class Exhibit(NamedTuple):
 frictionlab run {self.study}
 ```
 
-prints
-
-{rows}```text
-{printed}
-```
-
-from [{self.name}.yaml]({study}):
+runs [{self.name}.yaml]({study}):
 
 ```{{literalinclude}} {study}
 :language: yaml
@@ -90,16 +78,6 @@ from [{self.name}.yaml]({study}):
     def card(self) -> str:
         """Its entry on the first page."""
         return f"- [![{self.title}](figures/{self.name}.svg) {self.question}]({self.name}.md)\n"
-
-    def excerpt(self, printed: str) -> str:
-        """Of what the command says without its models: the counts, the lines that answer, the last line."""
-        *body, expected = printed.splitlines()
-        counts, table, *reasons = "\n".join(body).split("\n\n")
-        head, *lines = (line[: table.index("  model")].rstrip() for line in table.splitlines())
-        lines += "\n".join(reasons).splitlines()
-        kept = [line for line in lines if re.search(self.rows or "", line)]
-        more = [f"... {len(lines) - len(kept)} more lines; every point is in runs/{self.name}/results.csv"]
-        return "\n".join([counts, "", head, *kept, *(more if len(kept) < len(lines) else []), expected])
 
 
 def study_named(name: str) -> Path:
@@ -132,19 +110,12 @@ def make(exhibit: Exhibit) -> None:
     """Run the study; write its page and its figure."""
     with tempfile.TemporaryDirectory() as folder:
         finding = load_study(study_named(exhibit.name)).figures.finding
-        done = subprocess.run(
-            [COMMAND, "run", exhibit.study, "-o", f"{folder}/run"],
-            cwd=STUDIES.parent,
-            stdout=subprocess.PIPE,
-            text=True,
-            check=True,
-        )
+        command = [COMMAND, "run", exhibit.study, "-o", f"{folder}/run"]
+        subprocess.run(command, cwd=STUDIES.parent, stdout=subprocess.DEVNULL, check=True)
         drawn = [name for name in FIGURE_NAMES if Path(folder, "run", "figures", f"{name}.svg").exists()]
         figure = Path(folder, "run", "figures", f"{finding or drawn[0]}.svg").read_text()
-    left_out = "model ", "words of models", "table in "
-    lines = [line for line in done.stdout.splitlines()[1:] if not line.startswith(left_out)]
     (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(figure)
-    (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page(exhibit.excerpt("\n".join(lines).strip())))
+    (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page())
 
 
 def index(shown: list[Exhibit]) -> str:
@@ -157,7 +128,7 @@ def index(shown: list[Exhibit]) -> str:
     ]
     return f"""# Gallery
 
-What have others computed? Each picture leads to a page with the answer, the study and what it prints.
+What have others computed? Each picture leads to a page with the answer and the study.
 `python docs/gallery/make.py` runs them all again. What many studies found together: {found}.
 
 ```{{toctree}}

@@ -105,9 +105,7 @@ def test_only_bristles_push_in_phase_with_the_slip_and_a_moving_belt_weakens_bot
         fl.describing_function(fl.Dahl(mu=1, presliding_length=length), 1, 1, ratio)
         for length in (1e-2, 1e-4)
     )
-    printed = {0.0: (0.159, 1.26), 0.5: (0.148, 1.089), 0.9: (0.1, 0.521)}[
-        ratio
-    ]  # two in docs/dynamic_laws.md
+    printed = {0.0: (0.159, 1.26), 0.5: (0.148, 1.089), 0.9: (0.1, 0.521)}[ratio]  # two in docs/paper.md
 
     assert (-soft.imag, soft.real) == pytest.approx(printed, abs=5.1e-4)
     assert rigid == pytest.approx(4 / math.pi * math.sqrt(1 - ratio**2), abs=1e-10)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable
+from itertools import accumulate
 
 import numpy as np
 import pandas as pd
 
 from frictionlab.columns import SHOWN_IN_PART
 from frictionlab.results.part import Places
-from frictionlab.study import StudyCurve
+from frictionlab.study.grid import StudyGrid
 
 LONG_TABLE = 100_000
 """Rows above which a table is written piece by piece, and shown thinned."""
@@ -17,11 +19,35 @@ MOST_CURVES, MOST_POINTS = 100, 200
 MOST_ODD = 1000
 
 
-def shown_rows(curves: Sequence[StudyCurve]) -> Places:
-    """Rows of curves spread over the study, of each the ends and points spread between them."""
-    chosen = [curves[place] for place in _spread_over(len(curves), MOST_CURVES)]
-    rows = [np.asarray(each.rows)[_spread_over(len(each.rows), MOST_POINTS)] for each in chosen]
+def shown_rows(grid: StudyGrid) -> Places:
+    """Rows of some curves of a grid, of each the ends and points spread between them.
+
+    The curves make a grid of their own: of every axis, method and law the first, the last and some spread between.
+    """
+    curves = list(grid.curves())
+    rows = [
+        np.asarray(curves[place].rows)[_spread_over(len(curves[place].rows), MOST_POINTS)]
+        for place in _shown_curves(grid)
+    ]
     return np.sort(np.concatenate(rows))
+
+
+def _shown_curves(grid: StudyGrid) -> list[int]:
+    """The places of curves, of all laws at the same values: ``MOST_CURVES`` at most, as many along each axis."""
+    along = [len(axis) for axis in grid.scene_axes if axis is not grid.speed_axis]
+    shapes = [(*map(len, grid.own_axes(law)), len(grid.methods), *along) for law in grid.laws]
+    firsts = [0, *accumulate(map(math.prod, shapes))]
+    laws, many = _spread_over(len(shapes), MOST_CURVES).tolist(), 1
+    while (
+        many < max(map(max, shapes))
+        and sum(math.prod(min(size, many + 1) for size in shapes[law]) for law in laws) <= MOST_CURVES
+    ):
+        many += 1
+    found = list[int]()
+    for law in laws:
+        places = np.meshgrid(*(_spread_over(size, many) for size in shapes[law]), indexing="ij")
+        found += (firsts[law] + np.ravel_multi_index([each.ravel() for each in places], shapes[law])).tolist()
+    return found
 
 
 def _spread_over(count: int, most: int) -> Places:

@@ -181,7 +181,7 @@ def _table(folder: Path, study: Study) -> pd.DataFrame:
     file = folder / "results.parquet"
     try:
         long = rows_of_file(file) > LONG_TABLE and rows_of_file(file) == grid_size(study)
-        rows = shown_rows(list(study.curves())) if long else None
+        rows = shown_rows(study) if long else None
         table = read_whole(file) if rows is None else thinned(read_pieces(file), rows)
     except Exception as problem:  # a damaged file makes pyarrow raise whatever it stumbles over
         reason = str(problem).partition("\n")[0]

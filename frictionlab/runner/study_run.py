@@ -116,9 +116,7 @@ class StudyRun:
         """The run as the folder holds it, judged anew."""
         assert self.folder is not None
         folder, study, self._is_idle = self.folder, self.study, True
-        shown = (
-            thinned(read_pieces(folder.table), shown_rows(list(study.curves()))) if self._is_long else None
-        )
+        shown = thinned(read_pieces(folder.table), shown_rows(study)) if self._is_long else None
         done = self._read_run(shown, folder.counts(), folder.read_curves())
         if study.keep_harmonics is not None:
             done = replace(done, harmonics=folder.intact_text(folder.harmonics_file))
@@ -185,7 +183,7 @@ class StudyRun:
     def _gathered(self, solving: Solving, stopped: bool) -> Run:
         """The run, written and judged. Raises Interrupted or UnsavedError, both with the run."""
         usual = self.study.columns is None
-        gathered = GatheredTable(shown_rows(solving.curves) if self._is_long else None, usual)
+        gathered = GatheredTable(shown_rows(self.study) if self._is_long else None, usual)
         done, unsaved = None, None
         try:
             with TableFiles(self.folder, self._as_csv, usual and self._is_long) as files:

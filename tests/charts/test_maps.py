@@ -16,6 +16,8 @@ from matplotlib.figure import Figure
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, figures_of
 from frictionlab.charts.maps import map_of
+from frictionlab.charts.v_lin import v_lin_of
+from frictionlab.columns import SHOWN_IN_PART
 
 FREQUENCIES, LOADS = np.linspace(0.5, 2.0, 7), np.geomspace(1.0, 100.0, 5)
 
@@ -142,6 +144,25 @@ def test_v_lin_is_drawn_from_its_formula_between_the_points() -> None:
 def test_an_error_that_cannot_be_seen_has_no_map() -> None:
     shown = [[axes.get_ylabel() for axes in drawn(grid(error=error)).axes] for error in (1e-9, 0.01)]
     assert ["error bound of the mean" in labels for labels in shown] == [False, True]
+
+
+def test_v_lin_of_no_scene_is_not_known() -> None:
+    study = fl.Study.of(
+        fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(amplitude=1, frequency=2)),
+        fl.Coulomb(mu=0.4),
+    )
+
+    assert v_lin_of(study, {"scene.normal_load": 1.0}) == pytest.approx(2.0 / np.hypot(3.0, 0.4))
+    assert np.isnan(v_lin_of(study, {"scene.normal_load": -1.0}))  # at the edge of a cell
+
+
+def test_a_picture_of_one_value_is_no_map() -> None:
+    curves = along_speed(13)
+    pairs = curves["scene.drive.frequency"].rank(method="dense") // 2
+    spread = curves.assign(**{"scene.damping_ratio": pairs})
+    spread.attrs = {SHOWN_IN_PART: True}
+
+    assert map_of(spread) is None
 
 
 def test_a_grid_with_holes_is_lines() -> None:

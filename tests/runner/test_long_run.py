@@ -182,14 +182,37 @@ def test_the_page_and_the_figures_show_some_and_tell_of_all(
 
 
 def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
-    curves = list(
-        parse_study(study(sweep={"scene.belt_speed": {"start": 1, "stop": 9, "num": 5000}})).curves()
+    rows = thinned.shown_rows(
+        parse_study(study(sweep={"scene.belt_speed": {"start": 1, "stop": 9, "num": 5000}}))
     )
-    rows = thinned.shown_rows(curves)
 
     assert {0, 4999, 5000, 9999} <= set(rows.tolist())
     assert len(rows) == 400
     assert (np.diff(rows) > 0).all()
+
+
+def test_shown_curves_of_many_make_a_grid_of_their_own() -> None:
+    sweep = {
+        "laws.static.mu_static": [0.5, 0.6, 0.7],
+        "scene.drive.frequency": {"start": 1, "stop": 2, "num": 41},
+        "scene.belt_speed": {"start": 1, "stop": 9, "num": 5},
+        "scene.normal_load": {"start": 1, "stop": 5, "num": 33},
+    }
+    wanted = parse_study(study(sweep=sweep, methods=["exact", "shooting"]))
+    shown, cases = thinned.shown_rows(wanted), wanted.cases()
+    chosen = [cases[row] for row in shown.tolist()]
+
+    for law, parameters in (("coulomb", {None}), ("static", {0.5, 0.6, 0.7})):
+        own = [case for case in chosen if case.law_label == law]
+        values = [
+            {getattr(case.given_law, "mu_static", None) for case in own},
+            {case.method_label for case in own},
+            {case.scene.frequency for case in own},
+            {case.scene.normal_load for case in own},
+        ]
+        assert values[:2] == [parameters, {"exact", "shooting"}]
+        assert (values[2], values[3]) == ({1.0, 1.5, 2.0}, {1.0, 3.0, 5.0})
+        assert len(own) == 5 * np.prod([len(each) for each in values])
 
 
 def test_a_long_run_keeps_the_memory_of_laws_that_come_later(tmp_path: Path, short_pieces: None) -> None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from pydantic import ValidationError
-
 from frictionlab.columns import BELT_SPEEDS, without_shown_unit
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.study import Study
@@ -26,7 +24,7 @@ def v_lin_of(study: Study, values: Mapping[str, float | str]) -> float:
         given[name.removeprefix("scene.")] = value if isinstance(value, str) else value * size
     try:
         scene = Scene.model_validate(with_values(study.scene.given(), given))
-    except ValidationError:
+    except ValueError:
         return math.nan
     if scene.normal_load_variation is not None:
         return math.nan

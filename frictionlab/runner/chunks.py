@@ -22,7 +22,8 @@ USUAL_SIZE = 125
 """Points per chunk: pieces of one curve then hold 84 to 187 points. Fewer lose the continuation from the
 neighbour, more leave workers idle. Never made to depend on the number of workers: answers would, too."""
 LONG_STUDY, LONG_SIZE = 20_000, 500
-"""Points of a study long enough to keep workers busy by larger chunks, and the points of these."""
+"""Points of a study long enough to keep workers busy by larger chunks, and the points of these, or of several short
+ones that a worker is given together."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,16 @@ class Cut(NamedTuple):
 
 def chunk_size(curves: Sequence[StudyCurve]) -> int:
     """Points per chunk of a study of these curves, about."""
-    return LONG_SIZE if sum(len(each.rows) for each in curves) >= LONG_STUDY else USUAL_SIZE
+    return LONG_SIZE if _is_long(curves) else USUAL_SIZE
+
+
+def group_size(curves: Sequence[StudyCurve]) -> int:
+    """Points of the chunks that a worker is given together."""
+    return LONG_SIZE if _is_long(curves) else 1
+
+
+def _is_long(curves: Sequence[StudyCurve]) -> bool:
+    return sum(len(each.rows) for each in curves) >= LONG_STUDY
 
 
 def cuts(curves: Iterable[StudyCurve], size: int) -> Iterator[Cut]:

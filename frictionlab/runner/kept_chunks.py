@@ -108,18 +108,20 @@ class KeptChunks:
         if not _is_an_answer(part):
             return False
         path = self._path(key)
-        if path.parent not in self._made:
-            with suppress(OSError):  # the file cannot be written then either, and says so
-                path.parent.mkdir(parents=True, exist_ok=True)
-            self._made.add(path.parent)
+        self._make(path.parent)
         write_whole(path, _packed(part))
         return True
 
     def calls(self, key: str) -> KeptCalls:
         """Where those of the chunk of a key are kept, as long as it is under way."""
-        with suppress(OSError):  # what cannot be written then is not kept
-            self.folder.mkdir(parents=True, exist_ok=True)
+        self._make(self.folder)
         return KeptCalls(self._path(key).with_suffix(".calls"))
+
+    def _make(self, folder: Path) -> None:
+        if folder not in self._made:
+            with suppress(OSError):  # what cannot be written then says so, or is not kept
+                folder.mkdir(parents=True, exist_ok=True)
+            self._made.add(folder)
 
     def trim(self) -> None:
         """Remove those used longest ago until the rest is small enough; none that this run has used."""

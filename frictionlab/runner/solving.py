@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.results.part import Part
-from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts
+from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts, group_size
 from frictionlab.runner.errors import SaveError
+from frictionlab.runner.execute import grouped
 from frictionlab.runner.forecast import Forecast
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.limit import Solved, solve_within
@@ -115,7 +116,7 @@ class Solving:
                     yield each
 
         try:
-            force.solve(to_solve(), self._take, tick)
+            force.solve(grouped(to_solve(), group_size(self.curves)), self._take, tick)
         finally:
             forecast.is_over = True
             if self._keeping.kept is not None and not self._keeping.must_keep:

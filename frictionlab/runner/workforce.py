@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.runner.errors import NoScheduler
-from frictionlab.runner.execute import Renew, Take, collect
+from frictionlab.runner.execute import Group, Renew, Take, collect
 from frictionlab.runner.open_chunks import OpenChunk
 from frictionlab.runner.workers import Workers
 
@@ -28,24 +28,24 @@ class Workforce:
     renew: Renew | None = None
     elsewhere: bool = True
 
-    def solve(self, chunks: Iterable[OpenChunk], take: Take, tick: Callable[[], None]) -> None:
-        """Solve chunks, as ``collect`` does.
+    def solve(self, groups: Iterable[Group], take: Take, tick: Callable[[], None]) -> None:
+        """Solve groups of chunks, as ``collect`` does.
 
-        In other processes the first chunk of each kind comes back before others of it are sent: the kernels it needs
-        are then compiled once.
+        In other processes the first of each kind comes back before others of it are sent: the kernels it needs are
+        then compiled once.
         """
 
-        def first_of_each_kind_solved() -> Iterator[OpenChunk]:
-            kinds: set[Any] = set()
-            for each in chunks:
-                kind = _kernels_of(each)
-                if kind in kinds:
+        def first_of_each_kind_solved() -> Iterator[Group]:
+            known: set[Any] = set()
+            for each in groups:
+                kinds = {_kernels_of(work) for work in each}
+                if kinds <= known:
                     yield each
                 else:
-                    kinds.add(kind)
+                    known.update(kinds)
                     collect([each], self.executor, take, tick, self.renew)
 
-        sent = first_of_each_kind_solved() if self.elsewhere else chunks
+        sent = first_of_each_kind_solved() if self.elsewhere else groups
         collect(sent, self.executor, take, tick, self.renew)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import overload
 
 import numpy as np
@@ -52,7 +53,12 @@ class Scenes(Sequence[Scene]):
     def __getitem__(self, place: int | slice) -> Scene | Scenes:
         if isinstance(place, slice):
             return Scenes(self.scene, self.given[place])
-        return self.scene.at(float(self.given[place]))
+        return self._first if place == 0 else self.scene.at(float(self.given[place]))
+
+    @cached_property
+    def _first(self) -> Scene:
+        """For all who ask what every scene has in common."""
+        return self.scene.at(float(self.given[0]))
 
     def __iter__(self) -> Iterator[Scene]:
         return (self.scene.at(float(speed)) for speed in self.given)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import threading
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -31,8 +29,21 @@ class Solved(NamedTuple):
 
 
 def solve_each(chunks: Sequence[Chunk]) -> list[Solved]:
-    """Answer every point of some chunks, one after another. Raises BrokenPlugin."""
-    return [solve_within(chunk) for chunk in chunks]
+    """Answer every point of chunks of one task; where they take too long together, of each half of them apart.
+
+    Raises BrokenPlugin.
+    """
+    if len(chunks) == 1:
+        return [solve_within(chunks[0])]
+    try:
+        return within(sum(map(_seconds, chunks)), _each_timed, chunks)
+    except OverLimit:
+        half = len(chunks) // 2
+        return solve_each(chunks[:half]) + solve_each(chunks[half:])
+
+
+def _each_timed(chunks: Sequence[Chunk]) -> list[Solved]:
+    return [solve_timed(chunk) for chunk in chunks]
 
 
 def solve_within(chunk: Chunk) -> Solved:
@@ -40,16 +51,19 @@ def solve_within(chunk: Chunk) -> Solved:
 
     Raises BrokenPlugin.
     """
-    seconds, size = chunk.task.seconds_per_point, len(chunk.rows)
-    if seconds == math.inf and threading.current_thread() is not threading.main_thread():
-        return solve_timed(chunk)  # nobody interrupts this thread
+    size = len(chunk.rows)
     try:
-        return within(seconds * max(1.0, size / TOGETHER), solve_timed, chunk)
+        return within(_seconds(chunk), solve_timed, chunk)
     except OverLimit:
         if size == 1:
-            return Solved([_killed(chunk)], seconds)
+            return Solved([_killed(chunk)], chunk.task.seconds_per_point)
     halves = [solve_within(chunk.of(where)) for where in (slice(size // 2), slice(size // 2, None))]
     return Solved([part for half in halves for part in half.parts], sum(half.seconds for half in halves))
+
+
+def _seconds(chunk: Chunk) -> float:
+    """The time that it may take."""
+    return chunk.task.seconds_per_point * max(1.0, len(chunk.rows) / TOGETHER)
 
 
 def solve_timed(chunk: Chunk) -> Solved:

@@ -71,7 +71,8 @@ class Rows(NamedTuple):
     @property
     def constant_friction(self) -> bool:
         """Whether steady sliding has one friction coefficient at every speed."""
-        known = self.steady[np.isfinite(self.steady)]
+        steady = self.steady
+        known = steady[np.isfinite(steady)]
         return bool(known.size and np.ptp(known) <= _SAME * np.abs(known).max())
 
 

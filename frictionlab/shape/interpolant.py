@@ -30,6 +30,8 @@ ABSCISSAE = np.sin(_ANGLE)
 """Belt speeds over the end of reversal at which curves are interpolated, from 0 to 1."""
 AREA_WEIGHTS = np.tile(_WEIGHTS, _PANELS) * (0.25 * np.pi / _PANELS) * np.cos(_ANGLE)
 """Weights of the integral over ``ABSCISSAE``."""
+_READ = np.concatenate([_ANGLE, np.arcsin(WINDOW * ABSCISSAE), np.arcsin([WINDOW, 0.5, STEP, 2.0 * STEP])])
+"""Angles at which a curve is read: over the range, over the window, and single ones."""
 
 
 class UnreadableCurve(ValueError):
@@ -109,14 +111,15 @@ def interpolant_of(curve: FrictionCurve) -> Interpolant:
     inside = curve.inside
     angle = np.concatenate(([0.0], np.arcsin(curve.speed[inside] / curve.end.value), [0.5 * np.pi]))
     path = monotone_cubic(angle, np.concatenate(([low], curve.friction[inside], [high])))
-    edge, half, first, second = path(np.arcsin([WINDOW, 0.5, STEP, 2.0 * STEP]))
+    read, many = path(_READ), len(ABSCISSAE)
+    edge, half, first, second = read[2 * many :].tolist()
     # a curve that falls again may have no rise within the window
-    rise = max(float(edge) - low, NO_SHARE * abs(high))
+    rise = max(edge - low, NO_SHARE * abs(high))
     return Interpolant(
-        range=(path(_ANGLE) - low) / (high - low),
-        window=(path(np.arcsin(WINDOW * ABSCISSAE)) - low) / rise,
-        half=float(half) / high,
-        initial=float(second - 2.0 * first + low) / STEP**2 / high,
+        range=(read[:many] - low) / (high - low),
+        window=(read[many : 2 * many] - low) / rise,
+        half=half / high,
+        initial=(second - 2.0 * first + low) / STEP**2 / high,
     )
 
 
@@ -150,14 +153,14 @@ class MonotoneCubic(NamedTuple):
 
     def __call__(self, at: ArrayLike) -> Floats:
         """Values of the interpolant; outside the points the value of the nearest one."""
-        x = np.clip(np.asarray(at, dtype=np.float64), self.x[0], self.x[-1])
-        left = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2)
-        width = self.x[left + 1] - self.x[left]
-        rise = (self.y[left + 1] - self.y[left]) / width
+        x = np.minimum(np.maximum(np.asarray(at, dtype=np.float64), self.x[0]), self.x[-1])
+        left = np.searchsorted(self.x[1:-1], x, side="right")
+        width, before, after = np.diff(self.x), self.slope[:-1], self.slope[1:]
+        rise = np.diff(self.y) / width
+        square = (3.0 * rise - 2.0 * before - after) / width
+        cube = (before + after - 2.0 * rise) / width**2
         s = x - self.x[left]
-        square = (3.0 * rise - 2.0 * self.slope[left] - self.slope[left + 1]) / width
-        cube = (self.slope[left] + self.slope[left + 1] - 2.0 * rise) / width**2
-        return np.asarray(self.y[left] + s * (self.slope[left] + s * (square + s * cube)))
+        return np.asarray(self.y[left] + s * (self.slope[left] + s * (square[left] + s * cube[left])))
 
 
 def monotone_cubic(x: Floats, y: Floats) -> MonotoneCubic:

@@ -78,6 +78,15 @@ def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypa
     assert allowed == [0.3 * 50 / 10]
 
 
+def test_curves_that_are_sent_together_are_answered_but_for_the_point_over_the_limit(released, monkeypatch):
+    monkeypatch.setattr("frictionlab.runner.chunks.LONG_STUDY", 15)
+    sweep = {"scene.normal_load": [1.0, 2.0, 3.0], "scene.belt_speed": [4, 5, 6, 7, 8]}
+    done = fl.run(STUDY | {"sweep": sweep, "limit": {"seconds_per_point": 0.2}})
+
+    assert done.table["status"].tolist() == ["ok", "ok", "killed", "ok", "ok"] * 3
+    assert done.table["mean_friction"].notna().sum() == 12
+
+
 def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
     scene = fl.Scene(
         damping_ratio=0.1, normal_load=10, belt_speed=6, drive=fl.Drive(unbalance=10, frequency=1)

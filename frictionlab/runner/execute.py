@@ -23,27 +23,27 @@ MOST_SENDINGS = 5
 MOST_RENEWALS = 20
 """How often a pool is made anew that breaks before anything has come back."""
 
-Group = list[OpenChunk]
+SentGroup = list[OpenChunk]
 """Chunks that go to a worker, and come back, together."""
 Take = Callable[[OpenChunk, Solved], None]
 Renew = Callable[[], Executor]
 
 
-def grouped(chunks: Iterable[OpenChunk], points: int) -> Iterator[Group]:
+def grouped(chunks: Iterable[OpenChunk], points: int) -> Iterator[SentGroup]:
     """Neighbours that have about so many points: to send out chunks of a few takes longer than to solve them."""
-    group, size = Group(), 0
+    group, size = SentGroup(), 0
     for each in chunks:
         group.append(each)
         size += len(each.left)
         if size + 0.5 * len(each.left) > points:
             yield group
-            group, size = Group(), 0
+            group, size = SentGroup(), 0
     if group:
         yield group
 
 
 def collect(
-    groups: Iterable[Group],
+    groups: Iterable[SentGroup],
     executor: Executor,
     take: Take,
     tick: Callable[[], None],
@@ -79,9 +79,9 @@ class _Sent:
         self._done: SimpleQueue[Future[list[Solved]]] = SimpleQueue()
         self._tries: dict[int, int] = {}
         self._renewed = 0
-        self.waiting: dict[Future[list[Solved]], Group] = {}
+        self.waiting: dict[Future[list[Solved]], SentGroup] = {}
 
-    def send(self, group: Group) -> None:
+    def send(self, group: SentGroup) -> None:
         """Send chunks out. Raises BrokenExecutor."""
         chunks = [work.chunk for work in group]
         try:
@@ -100,7 +100,7 @@ class _Sent:
             return self._done.get(timeout=seconds)
         return None
 
-    def send_again(self, group: Group, problem: BaseException) -> None:
+    def send_again(self, group: SentGroup, problem: BaseException) -> None:
         """Chunks whose worker was lost, to another one. Raises BrokenExecutor where that happens again and again."""
         if isinstance(problem, BrokenExecutor):  # of a pool all chunks are lost, with one worker at fault
             lost_for_good = self._renew is None or self._renewed >= MOST_RENEWALS

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.runner.errors import NoScheduler
-from frictionlab.runner.execute import Group, Renew, Take, collect
+from frictionlab.runner.execute import Renew, SentGroup, Take, collect
 from frictionlab.runner.open_chunks import OpenChunk
 from frictionlab.runner.workers import Workers
 
@@ -28,14 +28,14 @@ class Workforce:
     renew: Renew | None = None
     elsewhere: bool = True
 
-    def solve(self, groups: Iterable[Group], take: Take, tick: Callable[[], None]) -> None:
+    def solve(self, groups: Iterable[SentGroup], take: Take, tick: Callable[[], None]) -> None:
         """Solve groups of chunks, as ``collect`` does.
 
         In other processes the first of each kind comes back before others of it are sent: the kernels it needs are
         then compiled once.
         """
 
-        def first_of_each_kind_solved() -> Iterator[Group]:
+        def first_of_each_kind_solved() -> Iterator[SentGroup]:
             known: set[Any] = set()
             for each in groups:
                 kinds = {_kernels_of(work) for work in each}

@@ -21,7 +21,6 @@ STUDIES = sorted(path for path in (PROJECT / "studies").rglob("*.yaml") if path.
 
 SLOW = (
     "not_unique_stribeck",
-    "coulomb",
     "bifurcation_stribeck",
     "prescribed_curve_shapes_lugre",
     "popov_contact_stiffness",

@@ -51,7 +51,7 @@ LINE_PLACES = 400  # places along a line from a formula
 RASTERIZED = 100  # cells: more are pixels in a drawing
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
-BOUNDARY_LINE: Any = {"color": "#b3123c", "linewidth": 1.8, "zorder": 4}
+BOUNDARY_LINE: Any = {"color": "#b3123c", "linewidth": 1.8, "linestyle": "solid", "zorder": 4}
 OUTLINE = withStroke(linewidth=2.8, foreground="white")
 DARK_EDGE = withStroke(linewidth=2.2, foreground="0.2")
 MEASURE_NAMES = {

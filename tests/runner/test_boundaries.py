@@ -155,3 +155,47 @@ def test_a_study_says_what_its_lines_are_over() -> None:
 def test_what_is_no_boundary_is_said(told: dict[str, Any], said: str) -> None:
     with pytest.raises(StudyError, match=said):
         study(**told)
+
+
+WEAK = 1e-4
+"""Normal load so small that the motion is that without friction."""
+
+
+@pytest.mark.parametrize("across", [None, (0.01, 0.0), (1.5, 70.0), (300.0, 0.0)])
+def test_weak_friction_leaves_the_area_of_the_motion_without_it(across: tuple[float, float] | None) -> None:
+    # from omega_r = 0, a mass alone, to infinity, where the body moves along the belt: 1 - 4/pi at every frequency
+    frequency, natural, phase = 1.3, *(across or (1e9, 0.0))
+    scene = SCENE.with_(normal_load=WEAK, **{"drive.frequency": frequency})
+    if across is not None:
+        load = fl.Load(amplitude=10, phase=phase)
+        scene = scene.with_(transverse=fl.Transverse(natural_frequency=natural, damping_ratio=0.1, load=load))
+    along, beside = (
+        10j * frequency * np.exp(1j * turned) / (each**2 - frequency**2 + 0.2j * own * frequency)
+        for each, own, turned in ((1.0, 1.0, 0.0), (natural, natural, np.radians(phase)))
+    )
+    turn = np.exp(1j * 2.0 * np.pi * (np.arange(4000) + 0.5) / 4000)
+    angle = np.linspace(0.0, np.pi / 2, 401)[1:]
+    slip = abs(along) * np.sin(angle)[:, None] - (along * turn).real + 1j * (beside * turn).real
+    rise = np.concatenate([[0.0], 0.4 * (slip / abs(slip)).real.mean(axis=1)])
+    chord = np.concatenate([[0.0], np.sin(angle)])
+    wanted = 2.0 * simpson((rise / rise[-1] - chord) * np.sqrt(1.0 - chord**2), dx=angle[0])
+
+    curves = [*fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": SPEEDS}).curves()]
+    with threads(1) as force:
+        (area_found,), (error,) = measures_of(curves, "shape_area", 1e-7, force, INSTALLED_LAWS)
+    assert abs(area_found - wanted) < error + 1e-3
+    if natural > 100.0:
+        assert area_found == pytest.approx(1.0 - 4.0 / np.pi, abs=2e-3)
+
+
+@pytest.mark.parametrize("frequency", [0.7, 1.6])
+def test_a_weak_soft_contact_has_no_area_where_prescribed_slip_has_none(frequency: float) -> None:
+    # at a presliding length of 0.472 amplitudes, as studies/prescribed_shape_measures_dahl.yaml has it
+    amplitude = 10.0 / abs(1.0 - frequency**2 + 0.2j * frequency)
+    scene = SCENE.with_(normal_load=WEAK, **{"drive.frequency": frequency})
+    dahl = fl.Dahl(mu=0.4, presliding_length=0.472 * amplitude)
+    curves = [*fl.Study.of(scene, dahl, sweep={"scene.belt_speed": SPEEDS}).curves()]
+    with threads(1) as force:
+        (found,), (error,) = measures_of(curves, "shape_area", 1e-7, force, INSTALLED_LAWS)
+
+    assert abs(found) < error + 1e-3

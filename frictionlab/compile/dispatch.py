@@ -237,6 +237,14 @@ def by_springs(of_linear: Any, of_bent: Any) -> Any:
     return _by_field("bends", of_linear, of_bent, **INNER, fastmath=True)
 
 
+def by_relaxing(of_none: Any, of_some: Any) -> Any:
+    """The same, chosen by the field ``relaxing``.
+
+    of_some: for a body with springs that relax.
+    """
+    return _by_field("relaxing", of_none, of_some, **INNER, fastmath=True)
+
+
 def _by_field(name: str, of_empty: Any, of_filled: Any, **options: Any) -> Any:
     """By whether a field of the first argument is filled: its own, or that of what varies or of the body it holds."""
 
@@ -294,6 +302,10 @@ def by_stepper(bodies: dict[type, Any]) -> Any:
     return _overloaded(chosen, resolve, list(plain.values()))
 
 
+PATHLESS = "keeps_stiffness", "relaxing"
+"""Fields that, filled, leave no bristle a function of its slip path alone, or no mass that DOP853 alone moves."""
+
+
 def by_law(
     of_sliding: Any,
     of_bristle: Any,
@@ -306,8 +318,9 @@ def by_law(
     The first argument is a law, or a record with a law in the field ``law``.
 
     of_path is for bristle laws on the line (no argument is complex) whose path is exact, in a contact that follows
-    the normal load, of_deflections for memory laws, of_scalars for those whose memories have no direction; the choice
-    is made when kernels are compiled, so that what a law does not need is never compiled for it.
+    the normal load, on a body that remembers nothing; of_deflections for memory laws, of_scalars for those whose
+    memories have no direction; the choice is made when kernels are compiled, so that what a law does not need is
+    never compiled for it.
     """
     deflections = of_deflections or of_sliding
     choices = of_sliding, of_bristle, of_path or of_bristle, deflections, of_scalars or deflections
@@ -317,15 +330,14 @@ def by_law(
         law, first = getattr(arguments[0], "law", arguments[0]), arguments[0]
         inside = first if isinstance(first, tuple) else ()
         planar = any(isinstance(argument, complex) for argument in (*arguments, *inside))
-        pathless = planar or any(_held(argument, "keeps_stiffness") for argument in arguments)
+        pathless = planar or any(_held(each, name) for each in arguments for name in PATHLESS)
         return bodies[_which(type(law), law.structure(), pathless)](*arguments)
 
     def resolve(*types: Any) -> Any:
         law, structure, _ = law_of_numbers[_numbers_in(types[0]).instance_class]
         planar = any(isinstance(kind, numba.types.Complex) for kind in (*types, *types[0].types))
-        return bodies[
-            _which(law, structure, planar or any(_is_filled(kind, "keeps_stiffness") for kind in types))
-        ]
+        pathless = planar or any(_is_filled(kind, name) for kind in types for name in PATHLESS)
+        return bodies[_which(law, structure, pathless)]
 
     return _overloaded(chosen, resolve, bodies)
 

@@ -119,30 +119,32 @@ def _some(typing: Any, mask: Any) -> Any:
 
 
 def _lane(typing: Any, lanes: Any, place: Any) -> Any:
-    if lanes != LANES:
+    if lanes not in (LANES, _types.float64):
         return None
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return builder.extract_element(values[0], values[1])
+        return builder.extract_element(values[0], values[1]) if lanes == LANES else values[0]
 
     return _types.float64(lanes, place), code
 
 
 def _item(lanes: Any, place: int) -> float:
-    return lanes[place]
+    return lanes if np.ndim(lanes) == 0 else lanes[place]
 
 
 def _with_lane(typing: Any, lanes: Any, place: Any, number: Any) -> Any:
-    if lanes != LANES:
+    if lanes not in (LANES, _types.float64):
         return None
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return builder.insert_element(values[0], values[2], values[1])
+        return builder.insert_element(values[0], values[2], values[1]) if lanes == LANES else values[2]
 
-    return LANES(lanes, place, _types.float64), code
+    return lanes(lanes, place, _types.float64), code
 
 
 def _with_item(lanes: Any, place: int, number: float) -> Any:
+    if np.ndim(lanes) == 0:
+        return number
     changed = lanes.copy()
     changed[place] = number
     return changed
@@ -167,6 +169,50 @@ def _least(typing: Any, lanes: Any) -> Any:
 def _least_in_python(lanes: Any) -> Any:
     eights = lanes.reshape(-1, LANE_COUNT).min(axis=1)
     return np.repeat(eights, LANE_COUNT)
+
+
+def _join(typing: Any, numbers: Any) -> Any:
+    if not isinstance(numbers, _types.UniTuple) or numbers.count not in (1, LANE_COUNT):
+        return None
+    alone = numbers.count == 1
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        if alone:
+            return builder.extract_value(values[0], 0)
+        lanes = _ir.Constant(VECTOR, _ir.Undefined)
+        for k in range(LANE_COUNT):
+            place = _ir.Constant(_ir.IntType(32), k)
+            lanes = builder.insert_element(lanes, builder.extract_value(values[0], k), place)
+        return lanes
+
+    return (_types.float64 if alone else LANES)(numbers), code
+
+
+def _join_in_python(numbers: Any) -> Any:
+    return numbers[0] if len(numbers) == 1 else np.array(numbers)
+
+
+def _sum_up(typing: Any, number: Any) -> Any:
+    if number not in (LANES, _types.float64):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        if number != LANES:
+            return values[0]
+        items = [
+            builder.extract_element(values[0], _ir.Constant(_ir.IntType(32), k)) for k in range(LANE_COUNT)
+        ]
+        while len(items) > 1:
+            items = [
+                builder.fadd(first, second) for first, second in zip(items[::2], items[1::2], strict=True)
+            ]
+        return items[0]
+
+    return _types.float64(number), code
+
+
+def _sum_in_python(number: Any) -> float:
+    return float(np.sum(number))
 
 
 def _room_for(typing: Any, count: Any) -> Any:
@@ -195,10 +241,14 @@ select = _made(_choose, _chosen_in_python, np.where)
 any_lane = _made(_some, _any_of_one, np.any)
 """any_lane(mask): whether it is true in any lane."""
 lane = _made(_lane, _item, _item)
-"""lane(lanes, place): the number in one lane."""
+"""lane(lanes, place): the number in one lane; one number as it is."""
 with_lane = _made(_with_lane, _with_item, _with_item)
-"""with_lane(lanes, place, number): the lanes with another number in one."""
+"""with_lane(lanes, place, number): the lanes with another number in one; that number in the place of one."""
 least_of_eight = _made(_least, _least_in_python, _least_in_python)
 """least_of_eight(lanes): in every lane the least of the eight beside each other."""
+as_one_number = _made(_join, _join_in_python, _join_in_python)
+"""as_one_number(numbers): a tuple of eight as lanes, a tuple of one as that."""
+summed = _made(_sum_up, _sum_in_python, _sum_in_python)
+"""summed(number): the sum of all lanes; one number as it is."""
 room_for = _made(_room_for, _room_in_python)
 """room_for(count): how many lanes so many numbers are put into at once."""

@@ -29,14 +29,14 @@ def reference_acceleration(body: BodyNumbers, sine: float, cosine: float) -> Any
 def slip_events(step: Any, rates: Any, slip: Any, slip_rate: Any) -> Any:
     """``stop`` and ``lowest`` for a stepper and the rates it is bound to (numba caches no kernel handed a function).
 
-    slip(problem, tau, u) and slip_rate(problem, tau, a) are of the deviation; problem.side is the sign of the slip
-    before it turns.
+    rates(problem, tau, end) is the acceleration at the end of a step, slip(problem, tau, u) and slip_rate(problem,
+    tau, a) are of the deviation; problem.side is the sign of the slip before it turns.
     """
 
     @inner
     def rise(problem: Any, tau: float, end: Any) -> float:
         """Rate of the slip in its direction before the event."""
-        a, _rub = rates(problem, tau, end.x, end.v)
+        a = rates(problem, tau, end)
         return problem.side * slip_rate(problem, tau, a)
 
     return _stop_at_zero(step, slip, rise), _slowest(step, rise)

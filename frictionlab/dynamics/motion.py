@@ -15,10 +15,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import fast, fast_embedded, inner
-from frictionlab.compile.dispatch import by_dimension, by_springs, by_variation, compilable, length
+from frictionlab.compile.dispatch import (
+    by_dimension,
+    by_relaxing,
+    by_springs,
+    by_variation,
+    compilable,
+    length,
+)
 from frictionlab.compile.law_lanes import friction_by_lane
 from frictionlab.compile.stack import items_of
 from frictionlab.dynamics.events import reference_acceleration
+from frictionlab.dynamics.relaxing import along_x1, held_back, held_back_curvature, held_back_impulse
 from frictionlab.dynamics.waves import (
     number_at,
     wave_at,
@@ -267,7 +275,7 @@ def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
     return BodyNumbers(
         body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
         body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
-        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying, body.bends,
+        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying, body.bends, body.relaxing,
     )  # fmt: skip
 
 
@@ -359,8 +367,7 @@ def mean_friction(impulse: Any, time: float) -> Any:
 
 
 @inner
-def holding_force(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
-    """The force of friction that keeps a mass at x with the belt, its rate and the rate of that."""
+def _held_by_friction(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
     carried = belt_velocity(body, belt_speed, now) + 0.0 * x
     pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
     jerk = belt_jerk(body, belt_speed, now) + 0.0 * x
@@ -373,6 +380,19 @@ def holding_force(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) ->
         bend - restoring_force(beside, pushed, jerk) - belt_snap(body, belt_speed, now),
     )
 
+
+def _held_against_relaxing(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
+    held, rate, bend = _held_by_friction(body, belt_speed, now, x)
+    carried, pushed = belt_velocity(body, belt_speed, now), belt_acceleration(body, belt_speed, now)
+    force, rise, turn = held_back(body, belt_speed, now.tau, carried.real, pushed.real)
+    return held - along_x1(force, x), rate - along_x1(rise, x), bend - along_x1(turn, x)
+
+
+holding_force = by_relaxing(
+    lambda body, belt_speed, now, x: _held_by_friction(body, belt_speed, now, x), _held_against_relaxing
+)
+"""holding_force(body, belt_speed, now, x): the force of friction that keeps a mass at x with the belt, its rate and
+the rate of that."""
 
 _belt_bound = by_variation(
     lambda body, order: 0.0, lambda body, order: wave_bound(body.varying.table, body.varying.belt, order)
@@ -408,12 +428,28 @@ def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
 _more = by_springs(lambda body, belt_speed, x: 0.0, _more_of_bends)
 
 
+def _bound_of_relaxing(body: BodyNumbers, belt_speed: float) -> float:
+    velocity = belt_velocity(body, belt_speed, instant_at(body, body.relaxing.since)).real
+    return held_back_curvature(body, velocity, _belt_bound(body, 1))
+
+
+_curvature_of_relaxing = by_relaxing(lambda body, belt_speed: 0.0, _bound_of_relaxing)
+
+
 @inner
 def holding_curvature(body: BodyNumbers, belt_speed: float, x: Any) -> float:
-    """A bound on the second derivative of that force, of a mass that is at x now."""
+    """A bound on the second derivative of that force, of a mass that is at x now, when relaxing forces are known."""
     springs = (body.stiffness_mean + abs(body.stiffness_split)) * _belt_bound(body, 1)
     dashpots = (body.damping_mean + abs(body.damping_split)) * _belt_bound(body, 2)
-    return load_curvature(body) + springs + dashpots + _belt_bound(body, 3) + _more(body, belt_speed, x)
+    relaxing = _curvature_of_relaxing(body, belt_speed)
+    return (
+        load_curvature(body)
+        + springs
+        + dashpots
+        + _belt_bound(body, 3)
+        + _more(body, belt_speed, x)
+        + relaxing
+    )
 
 
 GAUSS = np.array([0.0, 0.5384693101056831, 0.906179845938664])
@@ -456,7 +492,8 @@ def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: flo
     first, last = instant_at(body, start), instant_at(body, end)
     gained = belt_velocity(body, belt_speed, last) - belt_velocity(body, belt_speed, first)
     springs = linear_force(body, positions, way) + _bent_impulse(body, belt_speed, start, end, x)
-    return load_impulse(body, start, end) - springs - gained
+    relaxing = held_back_impulse(body, belt_speed, start, end, way.real)
+    return load_impulse(body, start, end) - springs - gained - along_x1(relaxing, x)
 
 
 @inner

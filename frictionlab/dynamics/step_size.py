@@ -8,6 +8,7 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.lane_arrays import select
 from frictionlab.dynamics.motion import quickest_of
+from frictionlab.dynamics.relaxing import hardest
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -62,6 +63,6 @@ def longest_step(body: BodyNumbers, sliding: float, accuracy: float) -> float:
 
     Were it the same for all, two maps could agree because both are limited by it, and neither be accurate.
     """
-    stiffest = body.stiffness_mean + abs(body.stiffness_split)
+    stiffest = body.stiffness_mean + abs(body.stiffness_split) + hardest(body)
     radian = min(1.0 / quickest_of(body), 1.0 / math.sqrt(stiffest))
     return radian * min(1.0, 2.4 * (accuracy / (body.normal_load * sliding)) ** 0.125)

@@ -30,6 +30,16 @@ def multiply(matrix: Any, z: Any, out: Any) -> None:
 
 
 @inner
+def add_product(factor: float, left: Any, right: Any, out: Any) -> None:
+    """Add so many times the product of two square matrices to ``out``, another one."""
+    n = left.shape[0]
+    for row in range(n):
+        for k in range(n):
+            for column in range(n):
+                out[row, column] = out[row, column] + factor * left[row, k] * right[k, column]
+
+
+@inner
 def invert(matrix: Any, inverse: Any) -> bool:
     """Gauss-Jordan elimination with row pivots; False where the matrix is singular to rounding."""
     n = matrix.shape[0]

@@ -22,6 +22,7 @@ from frictionlab.scene.body import Mass, Motion, with_free_motion
 from frictionlab.scene.changed import changed, with_values
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
+    BENDING,
     BY_TABLE,
     REMEMBERING,
     BeltVibration,
@@ -163,6 +164,11 @@ class Scene(ScenePart):
     def body_terms(self) -> list[str]:
         """The keys of ``body`` that add something to its linear spring and dashpot."""
         return [] if self.body is None else self.body.terms
+
+    @property
+    def bends(self) -> bool:
+        """Whether springs and dashpots of the body are not linear."""
+        return not set(BENDING).isdisjoint(self.body_terms)
 
     @property
     def remembers(self) -> bool:

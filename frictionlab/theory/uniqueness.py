@@ -15,6 +15,8 @@ damping.
 Where no dashpot damps and friction never falls, E still never grows, so that the map of a period moves no two states
 apart, and the states it leaves as they are form a convex set: one of them that attracts its neighbours is alone.
 
+What of the body remembers only takes energy: springs that relax add the sum of q^2/(2 k) to E, which decays.
+
 None of this holds for springs and dashpots that are not linear: a Duffing oscillator has several periodic motions.
 """
 
@@ -52,7 +54,7 @@ def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
     under the further conditions of ``is_unique``. Without a load across the belt the motion across decays under every
     isotropic law, and only the damping along the belt matters. The theorem does not cover laws with memory.
     """
-    return law.memory_kind == "none" and not scene.body_terms and (law.monotone() or falls_slowly(scene, law))
+    return law.memory_kind == "none" and not scene.bends and (law.monotone() or falls_slowly(scene, law))
 
 
 def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
@@ -60,7 +62,7 @@ def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
 
     Never on a body that is not linear, whose motions may part whatever the friction.
     """
-    return not scene.body_terms and falls_slower_than_dashpots(scene, law)
+    return not scene.bends and falls_slower_than_dashpots(scene, law)
 
 
 def falls_slower_than_dashpots(scene: Scene, law: FrictionLaw) -> bool:

@@ -33,6 +33,9 @@ MAP_KINDS = {
 """By the kind of memory, and that of a bristle whose deflection the slip path tells."""
 
 
-def map_kind(law: FrictionLaw, planar: bool) -> str:
-    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory."""
-    return "exact path" if "exact path" in law.structure() and not planar else law.memory_kind
+def map_kind(law: FrictionLaw, pathless: bool) -> str:
+    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory.
+
+    pathless: in the plane, or on a body that remembers.
+    """
+    return "exact path" if "exact path" in law.structure() and not pathless else law.memory_kind

@@ -11,8 +11,9 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
 from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.relaxing import elements_of, energy_unit, read_forces, write_forces
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
 from frictionlab.methods.periodic.maps.memory_state import (
@@ -69,7 +70,56 @@ def _size_with_memory(law: Any, like: Any) -> int:
 
 
 size_of = by_law(lambda law, like: 2 * dimension(like), _size_with_memory, None, _size_with_memory)
-"""size_of(law, like): how many numbers a state is."""
+"""size_of(law, like): how many numbers a state is, but for what of the body relaxes."""
+
+
+@inner
+def whole_size_of(law: Any, body: BodyNumbers, like: Any) -> int:
+    """With that: its forces are the last numbers of a state."""
+    return size_of(law, like) + elements_of(body)
+
+
+def _pack_forces(body: BodyNumbers, state: Any, rows: Any, first: int) -> None:
+    m = elements_of(body)
+    for k in range(m):
+        state[state.size - m + k] = energy_unit(body, k) * rows[first + k].real
+
+
+pack_forces = by_relaxing(lambda body, state, rows, first: None, _pack_forces)
+"""pack_forces(body, state, rows, first): put relaxing forces, from this row on, into a state."""
+
+
+def _unpack_forces(body: BodyNumbers, state: Any, rows: Any, first: int) -> None:
+    m = elements_of(body)
+    for k in range(m):
+        rows[first + k] = state[state.size - m + k] / energy_unit(body, k)
+
+
+unpack_forces = by_relaxing(lambda body, state, rows, first: None, _unpack_forces)
+"""unpack_forces(body, state, rows, first): the other way round."""
+
+
+def _relaxed(body: BodyNumbers, state: Any) -> None:
+    m, omega = elements_of(body), body.frequency
+    for k in range(m):
+        # what holds the friction-free motion back at tau = 0 is taken away
+        stiffness, rate = body.relaxing.stiffness[k], body.relaxing.rate[k]
+        sine, cosine = body.reference_sine.real, body.reference_cosine.real
+        force = stiffness * omega * (omega * cosine + rate * sine) / (omega * omega + rate * rate)
+        state[state.size - m + k] = -energy_unit(body, k) * force
+
+
+relax = by_relaxing(lambda body, state: None, _relaxed)
+"""relax(body, state): let no relaxing force act at tau = 0."""
+
+
+def _unstretched(body: BodyNumbers, state: Any) -> None:
+    for k in range(elements_of(body)):
+        state[state.size - 1 - k] = 0.0
+
+
+deviate_evenly = by_relaxing(lambda body, state: None, _unstretched)
+"""deviate_evenly(body, state): relaxing forces are those of the friction-free motion, as in a steady shift of it."""
 
 coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
@@ -100,8 +150,11 @@ normal load: so much always, and so much over the span."""
 def _image_without_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
     """Its steps are not kept."""
     y, u = unpack(case.body, state, case.like)
-    image = sliding_map(case, y, u, how.accuracy, how.track)
+    image = sliding_map(case, y, u, read_forces(case.body, state), how.accuracy, how.track)
     pack(case.body, residual, image.y - y, image.u - u)
+    write_forces(case.body, residual, image.forces)
+    for row in range(residual.size - elements_of(case.body), residual.size):
+        residual[row] = residual[row] - state[row]
     return image
 
 
@@ -111,10 +164,12 @@ def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> 
     work = workspace(law, like, contact_kind(body))
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
+    unpack_forces(body, state, work.start, MEMORY + count_of(law))
     cut_back(law, work)
     image = memory_map(case, y, u, work, how)
     pack(body, residual, image.y - y, image.u - u)
     pack_memory(law, body, work, residual, like)
+    pack_forces(body, residual, work.start, MEMORY + count_of(law))
     for row in range(2 * dimension(like), residual.size):
         residual[row] = residual[row] - state[row]
     return image
@@ -130,7 +185,7 @@ def _image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapp
     image = path_map(case, y, u, z, how)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
-    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
+    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps, ())
 
 
 paced_image = by_law(_image_without_memory, _image_with_memory, _image_by_path, _image_with_memory)
@@ -151,8 +206,14 @@ def _rest_with_a_bristle(law: Any, body: BodyNumbers, belt_speed: float, y: Any)
     return 1.0
 
 
+_periods_at_rest = by_relaxing(
+    lambda body, law, belt_speed, y: periods_at_rest(law, body, belt_speed, y),
+    # the force of what relaxes grows as nobody looks at there
+    lambda body, law, belt_speed, y: 1.0,
+)
+
 rest_of = by_law(
-    lambda law, body, belt_speed, y: periods_at_rest(law, body, belt_speed, y),
+    lambda law, body, belt_speed, y: _periods_at_rest(body, law, belt_speed, y),
     _rest_with_a_bristle,
     None,
     _rest_with_a_bristle,
@@ -188,7 +249,8 @@ remember = by_law(
 def start_of(law: Any, body: BodyNumbers, state: Any, x: Any, v: Any, z: Any) -> None:
     """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z.
 
-    With another memory, z is the velocity of steady sliding that it remembers.
+    With another memory, z is the velocity of steady sliding that it remembers. Nothing of the body remembers.
     """
     pack(body, state, x - body.reference_cosine, v - body.frequency * body.reference_sine)
     remember(law, body, state, z)
+    relax(body, state)

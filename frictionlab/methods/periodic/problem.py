@@ -40,7 +40,7 @@ from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
 from frictionlab.methods.periodic.lane_record import record_in_lanes
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
 from frictionlab.methods.periodic.near_rest import answer_near_rest
-from frictionlab.methods.periodic.period_map import size_of, unpack
+from frictionlab.methods.periodic.period_map import unpack, whole_size_of
 from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.methods.under_way import once
@@ -53,6 +53,7 @@ from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory.saturation import slides_saturated
+from frictionlab.theory.springs import BEST, mass_of
 from frictionlab.theory.uniqueness import (
     falls_slower_than_dashpots,
     falls_slowly,
@@ -103,11 +104,11 @@ FINEST = 1e-15
 class PeriodicProblem:
     """The kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
 
-    tolerance: on the mean friction.
+    tolerance: on the mean friction. which: of the sums of springs for what of the body remembers.
     """
 
-    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
-        self.mass, self.law = scene.mass(), law
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, which: int = BEST) -> None:
+        self.mass, self.law = mass_of(scene, which), law
         self.kernel: Any = answer_curve
         self.falls_slowly = falls_slowly(scene, law)
         check_attraction = law.count() > 0 and self.falls_slowly
@@ -126,13 +127,17 @@ class PeriodicProblem:
         linear = scene.is_harmonic and not self.body.bends
         constant = linear and not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
-        self.size = interpreted(size_of)(law, self.like)  # of a state
-        self.kind = map_kind(law, isinstance(self.like, complex))
+        self.size = interpreted(whole_size_of)(law, self.body, self.like)  # of a state
+        self.kind = map_kind(law, isinstance(self.like, complex) or bool(self.body.relaxing))
 
     @property
     def by_implicit_steps(self) -> Self | None:
         """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
-        if not (isinstance(self.like, complex) and self.goal.contracts) or self.body.varying:
+        if (
+            not (isinstance(self.like, complex) and self.goal.contracts)
+            or self.body.varying
+            or self.body.relaxing
+        ):
             return None
         other = copy.copy(self)
         other.kernel = answer_near_rest
@@ -163,7 +168,12 @@ class PeriodicProblem:
     def in_lanes(self, points: int) -> bool:
         """Whether eight are answered at once: motions in the plane that converge, without memory, under loads of one
         sine, of a curve that has more than a few points."""
-        planar = isinstance(self.like, complex) and self.kernel is answer_curve and not self.body.varying
+        planar = (
+            isinstance(self.like, complex)
+            and self.kernel is answer_curve
+            and not self.body.varying
+            and not self.body.relaxing
+        )
         return points >= FEWEST_IN_LANES and planar and self.goal.contracts and takes_lanes(self.law)
 
     def _close_in_lanes(self, speeds: Floats, periods: float) -> tuple[Curve, float]:

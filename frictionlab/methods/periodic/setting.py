@@ -26,6 +26,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import bare, belt_advance, changed, span, swing_of
+from frictionlab.dynamics.relaxing import lasting
 from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
 from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keeping, noting, pace_of, repeating
@@ -34,9 +35,9 @@ from frictionlab.methods.periodic.period_map import (
     grain_of,
     paced_image,
     rest_of,
-    size_of,
     start_of,
     unpack,
+    whole_size_of,
 )
 from frictionlab.methods.periodic.steady_sliding import ends_sliding, write_sliding
 from frictionlab.numerics.vectors import dimension
@@ -116,7 +117,8 @@ class Setting(NamedTuple):
 @inner
 def scales_on(body: BodyNumbers) -> Scales:
     """Over the span of the body."""
-    return Scales(span(body), body.damping_mean + body.damping_split, body.normal_load)
+    damping = body.damping_mean + body.damping_split + lasting(body)
+    return Scales(span(body), damping, body.normal_load)
 
 
 # --- the functions at addresses -------------------------------------------------------------------------------------
@@ -210,17 +212,17 @@ _follow_at, _rest_at, _start_at = call_at(_FOLLOW), call_at(_REST), call_at(_STA
 _slide_at, _ends_at, _free_at = call_at(_SLIDE), call_at(_ENDS), call_at(_FREE)
 
 
-def _orders_with_memory(law: Any, like: Any) -> Orders:
+def _orders_with_memory(law: Any, body: BodyNumbers, like: Any) -> Orders:
     """As many steps more as for ``FINER`` are the square root of two times as many; of order 5 there are many more
     for finer maps, and where events are found is less exact."""
     return Orders(5.7, 0.15, 1e-4, 3e-6, 3e-8)
 
 
 _orders = by_law(
-    lambda law, like: Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8),
+    lambda law, body, like: Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8),
     _orders_with_memory,
     # bristles never stick: their maps bend less, and cost more
-    lambda law, like: Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8),
+    lambda law, body, like: Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8),
     _orders_with_memory,
 )
 
@@ -242,8 +244,8 @@ def maps_of(law: Any, body: BodyNumbers) -> Any:
     grain, per_time = grain_of(law, on.body, like)
     scales = scales_on(_over(body, 1.0))
     return room, Maps(
-        written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6], size_of(law, like),
-        _has_memory(law), dimension(like) == 2, scales, swing_of(on.body), _orders(law, like),
+        written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6], whole_size_of(law, body, like),
+        _has_memory(law), dimension(like) == 2, scales, swing_of(on.body), _orders(law, on.body, like),
         coarsest_of(law, on.body), grain, per_time,
     )  # fmt: skip
 

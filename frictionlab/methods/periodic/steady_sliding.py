@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
 from frictionlab.dynamics.motion import equilibrium, free_cosine, free_sine, swing_of
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.memory_state import measure_scales, unpack_memory
 from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
-from frictionlab.methods.periodic.period_map import start_of, unpack
+from frictionlab.methods.periodic.period_map import deviate_evenly, start_of, unpack
 from frictionlab.numerics.linalg import norm, subtract
 from frictionlab.scene.body import BodyNumbers
 
@@ -55,6 +55,7 @@ def write_sliding(case: Case, state: Any) -> float:
     friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
     x, v, z = state_of_sliding(body, friction, like)
     start_of(law, body, state, x, v, z - memory_of_sliding(law, belt_speed))
+    deviate_evenly(body, state)
     return friction
 
 
@@ -91,7 +92,10 @@ def _creep_on_the_line(case: Case, state: Any, like: float) -> float:
     return left + _impulse_response(body) * body.normal_load * slope * abs(rate)
 
 
-_creep = by_dimension(_creep_on_the_line, lambda case, state, like: math.inf)
+_creep_of_body = by_relaxing(_creep_on_the_line, lambda case, state, like: math.inf)
+_creep = by_dimension(
+    lambda case, state, like: _creep_of_body(case, state, like), lambda case, state, like: math.inf
+)
 """A bound on the speed of the deviation from the vibration, from now on; none for bristles that are damped."""
 
 

@@ -438,8 +438,10 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
 def undamped(scene: Scene) -> bool:
     """Whether a free oscillation, along the belt or across it, has no dashpot."""
     mass = scene.mass()
-    damps = mass.damping > 0.0 or (
-        mass.bends and (mass.bends.dashpot_1 != 0.0 or mass.bends.dashpot_2 != 0.0)
+    damps = (
+        mass.damping > 0.0
+        or scene.remembers
+        or (mass.bends and (mass.bends.dashpot_1 != 0.0 or mass.bends.dashpot_2 != 0.0))
     )
     return not damps or (scene.transverse is not None and mass.transverse_damping == 0.0)
 

@@ -62,7 +62,7 @@ class Across:
 def axes_apart(scene: Scene, law: FrictionLaw) -> bool:
     """Whether both axes move, by loads of one sine, and neither feels the other."""
     couples = law.planar_form() != "per-axis" or scene.degrees_of_freedom != 2 or not scene.is_harmonic
-    return not couples and not along_the_belt(scene, law)
+    return not couples and not scene.remembers and not along_the_belt(scene, law)
 
 
 def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

@@ -53,6 +53,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import can_hold, friction_at_rest, resting_range, stays_at_rest
+from frictionlab.theory.springs import BEST, COARSE, is_exact
 from frictionlab.theory.uniqueness import is_unique_in_slip
 
 Complexes = NDArray[np.complex128]
@@ -69,6 +70,12 @@ HELD_ELASTICALLY = (
     "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
 )
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
+MISFIT = (
+    "error {:.1e} above the tolerance {:.1e}: what remembers is a sum of springs, and this is what they miss"
+)
+NO_MISFIT = (
+    "what remembers is a sum of springs, and of a coarser sum, which tells what they miss, no mean was found"
+)
 CARRIED = "friction holds the mass, and the belt carries it for some {:.0e} drive periods from slip to slip"
 BY_ROUNDING = (
     "next to rest two motions hardly approach each other in a period, and rounding alone leaves this error"
@@ -81,7 +88,31 @@ MAY_REST = (
 
 def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer driven scenes that differ in belt speed alone, by continuation."""
-    states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance))
+    found = _solved(scenes, law, tolerance, BEST)
+    if not scenes[0].remembers or is_exact(scenes[0]):
+        return found
+    return _with_misfit(found, [_solved(scenes, law, tolerance, which) for which in COARSE], tolerance)
+
+
+def _with_misfit(found: Answers, others: Sequence[Answers], tolerance: float) -> Answers:
+    """Answers for a sum of springs in the place of what remembers, their error also that to coarser sums."""
+    apart = np.sum([np.abs(found.mean.real - other.mean.real) for other in others], axis=0)
+    error, status, reason = found.error + apart, list(found.status), list(found.reason)
+    model = [f"{each}; {ModelWord.SPRINGS}" if each else "" for each in found.model]
+    kind, mean = list(found.error_kind), found.mean.copy()
+    for i in range(len(status)):
+        if status[i] == "ok" and not np.isfinite(apart[i]):
+            status[i], model[i], kind[i], mean[i], error[i] = "failed", "", "", UNKNOWN, math.nan
+            reason[i] = NO_MISFIT
+        elif status[i] == "ok" and error[i] > tolerance >= found.error[i]:
+            told = MISFIT.format(error[i], tolerance)
+            reason[i] = f"{reason[i]}; {told}" if reason[i] else told
+    return replace(found, status=status, reason=reason, model=model, error_kind=kind, mean=mean, error=error)
+
+
+def _solved(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, which: int) -> Answers:
+    """which: of the sums of springs in the place of what of the body remembers."""
+    states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance, which))
     at_rest = np.flatnonzero(belt_speeds_of(scenes) == 0.0).tolist()
     resting = [i for i in at_rest if stays_at_rest(scenes[i], law)]
     moving = [i for i in range(len(scenes)) if i not in resting]
@@ -428,7 +459,7 @@ class SteadyStates:
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
         )
         why = lags if problem.falls_slowly else "friction falls with speed"
-        why = "springs and dashpots are not linear" if scene.body_terms else why
+        why = "springs and dashpots are not linear" if scene.bends else why
         self._leave_open(i, f"{why}: {describe(reached)}", low, high)
         self.window[i] = max(one.averaged_over for one in reached) * problem.common
 

@@ -16,8 +16,9 @@ from frictionlab.methods.shooting.followed_states import follow_motion, follow_s
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
 from frictionlab.orbit.record import Orbit
-from frictionlab.scene.parts import BENDING
+from frictionlab.scene.parts import BENDING, REMEMBERING
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.springs import is_exact
 
 Applies = Callable[[Scene, FrictionLaw], bool]
 Solve = Callable[[Sequence[Scene], FrictionLaw, float], Answers]
@@ -39,6 +40,10 @@ CONSTANT_CONTACT = (
 CREEPS = (
     "on a belt at rest a contact whose memory has no direction creeps as long as its spring pulls: no state is "
     "steady but that of the unstretched spring; leave initial out, or give a belt speed"
+)
+
+NO_HARMONICS = (
+    "on a body that remembers shooting needs a drive, over whose harmonics its memory is fitted by springs"
 )
 
 
@@ -71,8 +76,12 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
-        if reason := beyond_linear(self.name, scene, BENDING) or about_rest(self.name, scene):
+        if reason := beyond_linear(self.name, scene, (*BENDING, *REMEMBERING)) or about_rest(
+            self.name, scene
+        ):
             return reason
+        if scene.undriven and scene.remembers:
+            return NO_HARMONICS
         if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
@@ -95,11 +104,13 @@ class Shooting(Method):
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
         """Of a driven mass, by the period map that closes its orbits."""
         solve = next(solve for applies, solve in CASES if applies(scene, law))
-        return follow_motion(scene, law, periods, tolerance) if solve is solve_driven else []
+        known = solve is solve_driven and (is_exact(scene) or not scene.remembers)
+        return follow_motion(scene, law, periods, tolerance) if known else []
 
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:
         """Motions of a driven mass followed to their ends, and from the ends at one belt speed on at the next."""
         solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
-        return follow_states(scenes, law, tolerance, starts) if solve is solve_driven else []
+        known = solve is solve_driven and (is_exact(scenes[0]) or not scenes[0].remembers)
+        return follow_states(scenes, law, tolerance, starts) if known else []

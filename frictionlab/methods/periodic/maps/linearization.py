@@ -27,6 +27,7 @@ from frictionlab.dynamics.motion import (
     swing_of,
     unbalanced_rate,
 )
+from frictionlab.dynamics.relaxing import elements_of, relaxing_rate
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -279,6 +280,9 @@ def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) ->
     work.slope[U] = load + jerk + restoring_force(springs_at(flow, work), 0.0 * turn, turn)
     for k in range(count_of(flow.law)):
         work.slope[MEMORY + k] = 0.0 * like
+    first = MEMORY + count_of(flow.law)
+    for k in range(elements_of(body)):
+        work.slope[first + k] = relaxing_rate(body, k, 0.0, -turn) + 0.0 * like
 
 
 _slope = by_scalars(_slope_of_deviation, _slope_of_slip)

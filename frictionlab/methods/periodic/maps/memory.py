@@ -53,6 +53,7 @@ from frictionlab.methods.periodic.maps.rates import (
     deviation_held,
     fill_rates,
     held_velocity,
+    rows_of,
     velocity_held,
 )
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS, Mapped
@@ -155,7 +156,7 @@ _layer = by_dimension(_layer_on_the_line, lambda work, covered, share, a, w: OPE
 @inner
 def _at_start(flow: Flow, work: Work, like: Any) -> Any:
     """Slip and its rate where the step starts."""
-    for row in range(MEMORY + count_of(flow.law)):
+    for row in range(rows_of(flow)):
         work.end[row] = work.start[row]
     return rates_at_end(flow, flow.anchor, work, like)
 
@@ -227,7 +228,7 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
     if ends:
         w, a = rates_at_end(flow, tau, work, like)
         side = change(flow, w, a, work)
-    for row in range(MEMORY + count_of(flow.law)):
+    for row in range(rows_of(flow)):
         work.start[row] = work.end[row]
     restore(flow, work)
     if flow.body.prescribed:  # the reference is the motion: no error of a step adds up
@@ -371,4 +372,4 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
         last = k == pieces_of(body) - 1
         after = _share_at(case, 0, 0.0) if last else _share_at(case, k + 1, end)
         _over_jump(work, law, _share_at(case, k, end), after)
-    return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps)
+    return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps, ())

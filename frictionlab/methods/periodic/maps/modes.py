@@ -25,6 +25,7 @@ from frictionlab.methods.periodic.maps.rates import (
     fill_rates,
     on_circle,
     remembers_stick,
+    rows_of,
     slip_rate_to_yield,
     slip_to_yield,
 )
@@ -140,7 +141,7 @@ def lowest(flow: Flow, w: Any, a: Any, work: Work) -> Guard:
 @inner
 def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
     """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
-    for row in range(MEMORY + count_of(flow.law)):
+    for row in range(rows_of(flow)):
         work.stage[row] = work.end[row]
     return fill_rates(flow, instant_near(flow, tau), work, like)
 

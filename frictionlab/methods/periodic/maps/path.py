@@ -105,7 +105,15 @@ def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
 
 
 step, dense = stepper(path_rates), interpolant(path_rates)
-stop, lowest = slip_events(step, path_rates, slip_at, slip_rate)
+
+
+@fast
+def _acceleration_after(leg: Leg, tau: float, end: Any) -> float:
+    a, _rub = path_rates(leg, tau, end.x, end.v)
+    return a
+
+
+stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
 
 
 @inner

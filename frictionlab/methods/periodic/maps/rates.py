@@ -32,6 +32,7 @@ from frictionlab.dynamics.motion import (
     slopes_at,
     unbalanced_load,
 )
+from frictionlab.dynamics.relaxing import along_x1, elements_of, relaxing_force, relaxing_rate
 from frictionlab.scene.body import BodyNumbers
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
@@ -43,7 +44,8 @@ FOLLOWS, SMOOTH, YIELDS = -1.0, 0.0, 1.0
 
 
 class Work(NamedTuple):
-    """Room for one step; a state is the mass (Y, U, IMPULSE) and, from MEMORY on, n numbers remembered."""
+    """Room for one step; a state is the mass (Y, U, IMPULSE) and, from MEMORY on, n numbers remembered, and last the
+    forces of what of the body relaxes."""
 
     start: Any  # where the step starts
     end: Any  # where it ends
@@ -82,15 +84,18 @@ contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
 
 @inlined
 def workspace(law: Any, like: Any, contact: Any) -> Work:
-    """Room on the caller's stack, at zero: it lives as long as the caller; contact: that of the body."""
+    """Room on the caller's stack, at zero: it lives as long as the caller; contact: that of the body.
+
+    There is room for eight springs that relax.
+    """
     return Work(
-        start=room(law, 1, 3, like),
-        end=room(law, 1, 3, like),
-        stage=room(law, 1, 3, like),
-        rates=room(law, 1, 3, like),
-        slope=room(law, 1, 3, like),
-        increments=room(law, 8, 24, like),
-        bends=room(law, 3, 9, like),
+        start=room(law, 1, 11, like),
+        end=room(law, 1, 11, like),
+        stage=room(law, 1, 11, like),
+        rates=room(law, 1, 11, like),
+        slope=room(law, 1, 11, like),
+        increments=room(law, 8, 88, like),
+        bends=room(law, 3, 33, like),
         memory=room(law, 1, 0, kind_of_memory(law, like)),
         moving=room(law, 1, 0, kind_of_memory(law, like)),
         jacobian=room(law, 6, 2, like),
@@ -133,6 +138,12 @@ velocity_held = by_scalars(
 
 rate_held = by_scalars(lambda flow, now, a: a, lambda flow, now, a: deviation_slip_rate(flow, now, a))
 """rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
+
+
+@fast
+def rows_of(flow: Flow) -> int:
+    """How many numbers a state is."""
+    return MEMORY + count_of(flow.law) + elements_of(flow.body)
 
 
 @fast
@@ -252,6 +263,9 @@ def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     # friction first: it may depend on the rates of what is remembered
     friction = friction_in_mode(flow.law, work, w)
     a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
+    a = a - along_x1(relaxing_force(body, work.stage, MEMORY + n), like)
+    for k in range(elements_of(body)):
+        work.rates[MEMORY + n + k] = relaxing_rate(body, k, work.stage[MEMORY + n + k], u) + 0.0 * like
     work.rates[Y], work.rates[U] = u, rate_held(flow, now, a)
     work.rates[IMPULSE] = load_share(body, now) * friction
     for k in range(n):

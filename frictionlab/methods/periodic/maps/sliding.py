@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, length
-from frictionlab.compile.lane_arrays import select
+from frictionlab.compile.decorators import fast, fast_embedded, inner
+from frictionlab.compile.dispatch import by_dimension, by_relaxing, length
+from frictionlab.compile.lane_arrays import select, summed
 from frictionlab.dynamics.events import dips, slip_events
 from frictionlab.dynamics.motion import (
     Flow,
@@ -34,10 +34,27 @@ from frictionlab.dynamics.motion import (
     slip_at,
     slip_rate,
 )
+from frictionlab.dynamics.relaxing import (
+    along_x1,
+    at_rest_until,
+    carrying,
+    deviating_force,
+    in_one_number,
+    stable_step,
+)
 from frictionlab.dynamics.step_size import growth_of, longest_step
 from frictionlab.methods.periodic.case import Case, case_in_piece
 from frictionlab.methods.periodic.maps.stick import StickPhase, stick_phase
-from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
+from frictionlab.numerics.steppers.dop853 import (
+    CarryingState,
+    Dense,
+    State,
+    carrying_interpolant,
+    carrying_stepper,
+    interpolant,
+    motion_within,
+    stepper,
+)
 from frictionlab.orbit.recorder import Track, panel_writer
 
 
@@ -51,12 +68,88 @@ class Mapped(NamedTuple):
     closest: float  # smallest slip speed at a node
     released: float  # when rest ended last; -1: never
     steps: int  # -1: gave up
+    forces: Any  # of what of the body relaxes, as one number, of the deviation
 
 
 MOST_STEPS = 200_000
 
 
-step, dense = stepper(rates), interpolant(rates)
+@fast_embedded
+def carrying_rates(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> Any:
+    """The same of a body that remembers, and the rates of its relaxing forces."""
+    a, rub = rates(problem, tau, y, u)
+    relaxing = problem.body.relaxing
+    return a - along_x1(summed(force), u), rub, relaxing.stiffness * u.real - relaxing.rate * force
+
+
+_step, _dense = stepper(rates), interpolant(rates)
+_carrying_step, _carrying_dense = carrying_stepper(carrying_rates), carrying_interpolant(carrying_rates)
+step, dense = (
+    by_relaxing(
+        lambda problem, tau, state, h: _step(problem, tau, state, h),
+        lambda problem, tau, state, h: _carrying_step(problem, tau, state, h),
+    ),
+    by_relaxing(
+        lambda problem, tau, state, h: _dense(problem, tau, state, h),
+        lambda problem, tau, state, h: _carrying_dense(problem, tau, state, h),
+    ),
+)
+
+
+@inner
+def _plain_state(problem: Flow, tau: float, y: Any, u: Any) -> State:
+    a, f = rates(problem, tau, y, u)
+    return State(y, u, a, f)
+
+
+@fast
+def _carrying_state(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> CarryingState:
+    a, f, r = carrying_rates(problem, tau, y, u, force)
+    return CarryingState(y, u, a, f, force, r)
+
+
+state_at = by_relaxing(
+    lambda problem, tau, y, u: _plain_state(problem, tau, y, u),
+    lambda problem, tau, y, u: _carrying_state(problem, tau, y, u, deviating_force(problem.body, tau)),
+)
+"""state_at(problem, tau, y, u): the state from which slip goes on, when the body knows its relaxing forces."""
+
+state_after = by_relaxing(
+    lambda problem, tau, taken: _plain_state(problem, tau, taken.x, taken.v),
+    lambda problem, tau, taken: _carrying_state(problem, tau, taken.x, taken.v, taken.e),
+)
+"""state_after(problem, tau, taken): the state at the end of a step."""
+
+
+def _carrying_on(problem: Flow, start: Any, lasts: float, y: Any, u: Any) -> CarryingState:
+    """Next to rest, in a while so short that forces grow evenly."""
+    relaxing = problem.body.relaxing
+    force = start.e + relaxing.stiffness * (y - start.x).real - (lasts * relaxing.rate) * start.e
+    return CarryingState(y, u, u, u, force, force)
+
+
+at_rest_after = by_relaxing(
+    lambda problem, start, lasts, y, u: State(y, u, u, u),
+    _carrying_on,
+)
+"""at_rest_after(problem, start, lasts, y, u): where rest begins, a short while after a state."""
+
+still_at = by_relaxing(
+    lambda problem, tau, y, u: State(y, u, u, u),
+    lambda problem, tau, y, u: CarryingState(
+        y, u, u, u, deviating_force(problem.body, tau), deviating_force(problem.body, tau)
+    ),
+)
+"""still_at(problem, tau, y, u): where it rests."""
+
+stopped_by = by_relaxing(
+    lambda problem, taken: State(taken.x, taken.v, taken.v, taken.v),
+    lambda problem, taken: CarryingState(taken.x, taken.v, taken.v, taken.v, taken.e, taken.e),
+)
+"""stopped_by(problem, taken): where rest begins, at the end of a step."""
+
+forces_held = by_relaxing(lambda problem, state: (), lambda problem, state: state.e)
+"""forces_held(problem, state): the relaxing forces that it holds."""
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------
@@ -87,13 +180,12 @@ class Landing(NamedTuple):
 REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
 
 
-stop, lowest = slip_events(step, rates, slip_at, slip_rate)
+@fast
+def _acceleration_after(problem: Flow, tau: float, end: Any) -> Any:
+    return state_after(problem, tau, end).a
 
 
-@inner
-def _state(problem: Flow, tau: float, y: Any, u: Any) -> State:
-    a, f = rates(problem, tau, y, u)
-    return State(y, u, a, f)
+stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
 
 
 @inner
@@ -134,7 +226,7 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
             path = 0.5 * wait * w
             friction_impulse = w / body.normal_load + resting_friction(body, belt_speed, node.tau, end, x)
             y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
-            return Landing(REST, wait, State(y, w, w, w), friction_impulse)
+            return Landing(REST, wait, at_rest_after(problem, node.state, wait, y, w), friction_impulse)
     return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
 
 
@@ -148,17 +240,18 @@ def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: 
     side, state, limit = problem.side, node.state, h
     after = side * slip_at(problem, node.tau + h, taken.v)
     if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
-        return Landing(STILL, h, _state(problem, node.tau + h, taken.x, taken.v), taken.friction_impulse)
+        return Landing(STILL, h, state_after(problem, node.tau + h, taken), taken.friction_impulse)
     if after <= 0.0 and leaving:
         return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
-    a, f = rates(problem, node.tau + h, taken.x, taken.v)
-    if after > 0.0 and not leaving and side * node.rate < 0.0 < side * slip_rate(problem, node.tau + h, a):
+    there = state_after(problem, node.tau + h, taken)
+    rises = side * slip_rate(problem, node.tau + h, there.a) > 0.0
+    if after > 0.0 and not leaving and side * node.rate < 0.0 and rises:
         limit = lowest(problem, node.tau, state, side * node.rate, h)
         after = side * slip_at(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
     if after <= 0.0:
         h, taken = stop(problem, node.tau, state, 0.0, limit)
-        return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.friction_impulse)
-    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.friction_impulse)
+        return Landing(REST, h, stopped_by(problem, taken), taken.friction_impulse)
+    return Landing(ACCEPT, h, there, taken.friction_impulse)
 
 
 def _after_in_the_plane(
@@ -166,10 +259,10 @@ def _after_in_the_plane(
 ) -> Landing:
     """Whether the slip came close to rest between the nodes: then the step was too long."""
     after = slip_at(problem, node.tau + h, taken.v)
-    a, f = rates(problem, node.tau + h, taken.x, taken.v)
-    if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, a), h):
+    there = state_after(problem, node.tau + h, taken)
+    if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, there.a), h):
         return Landing(REPEAT, 0.5 * h, node.state, y)
-    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.friction_impulse)
+    return Landing(ACCEPT, h, there, taken.friction_impulse)
 
 
 _after = by_dimension(_after_on_the_line, _after_in_the_plane)
@@ -246,7 +339,7 @@ def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
     u = u - reference_velocity(body, problem.sine, problem.cosine)
     y = rest.x - reference_position(body, tau)
-    return _state(problem, tau, y, u) if tau < end else State(y, u, u, u)
+    return state_at(problem, tau, y, u) if tau < end else still_at(problem, tau, y, u)
 
 
 class Attempt(NamedTuple):
@@ -283,12 +376,13 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
 
 
 @inner
-def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Mapped:
+def sliding_map(case: Case, y: Any, u: Any, forces: Any, accuracy: float, track: Track) -> Mapped:
     """One span from the deviation (y, u) at tau = 0; accuracy is each step's, in the norm of energy.
 
-    On a track with room every piece of the way is noted.
+    forces: of the deviation, of what of the body relaxes; nothing where nothing does. On a track with room every
+    piece of the way is noted.
     """
-    image = Mapped(y, u, 0.0 * y, 0.0, 1e300, -1.0, 0)
+    image = Mapped(y, u, 0.0 * y, 0.0, 1e300, -1.0, 0, forces)
     for k in range(pieces_of(case.body)):
         tau, end = piece_ends(case.body, k)
         image = _sliding_piece(case_in_piece(case, k), tau, end, image, accuracy, track)
@@ -302,20 +396,21 @@ def _sliding_piece(
     case: Case, tau: float, end: float, image: Mapped, accuracy: float, track: Track
 ) -> Mapped:
     """From one corner of what changes in time to the next; image: the state at the first, and what was met so far."""
-    law, body, belt_speed = case.law, case.body, case.belt_speed
-    y, u, friction_impulse, stuck, closest, released, steps = image
+    law, belt_speed, like = case.law, case.belt_speed, case.like
+    y, u, friction_impulse, stuck, closest, released, steps, forces = image
+    body = carrying(in_one_number(case.body), forces, tau)
     # the side of the first slip; a slip within the accuracy of zero is rest
-    longest = longest_step(body, law.sliding_friction(0.0), accuracy)
+    longest = min(longest_step(body, law.sliding_friction(0.0), accuracy), stable_step(body))
     h = 0.1 * longest
     w = slip_at(anchored(law, body, belt_speed, 1.0, tau), tau, u)
     problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, tau)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
-    state = State(y, u, u, u) if resting else _state(problem, tau, y, u)
+    state = still_at(problem, tau, y, u) if resting else state_at(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
             # at rest: until the belt has carried the mass to where friction no longer holds it
             x = state.x + reference_position(body, tau)
-            rest = stick_phase(case, tau, x, accuracy, end)
+            rest = stick_phase(Case(law, body, belt_speed, like), tau, x, accuracy, end)
             if track.stick.size > 0:
                 _note_rest(track, problem, tau, x, rest)
             friction_impulse, stuck = friction_impulse + rest.friction_impulse, stuck + rest.stuck
@@ -323,6 +418,7 @@ def _sliding_piece(
                 released = tau + rest.stuck
             tau, resting, leaving, closest, h = rest.tau, False, True, 0.0, 0.1 * longest
             steps += 1  # rest that ends where it begins takes no step, and no time
+            body = at_rest_until(body, belt_speed, tau)
             problem = anchored(law, body, belt_speed, rest.side, tau)
             state = _after_rest(problem, rest, end)
             continue
@@ -333,9 +429,12 @@ def _sliding_piece(
         done, h, tried = _slide(problem, node, leaving, accuracy, min(h, longest, end - tau), track)
         steps += tried
         if steps > MOST_STEPS or runs_away(body, state.x):
-            return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, -1)
+            steps = -1
+            break
         if done.verdict != REPEAT:
             resting, leaving = done.verdict == REST, done.verdict == STILL
             friction_impulse, state = friction_impulse + done.friction_impulse, done.end
             tau = tau + done.h if end - tau > done.h else end
-    return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, steps)
+            body = carrying(body, forces_held(problem, state), tau)
+    forces = forces_held(problem, state)
+    return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, steps, forces)

@@ -15,9 +15,10 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_dimension, by_scalars, length
+from frictionlab.compile.dispatch import by_dimension, by_relaxing, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import Flow, instant_near, load_share
+from frictionlab.dynamics.relaxing import along_x1, elements_of, energy_unit
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -27,6 +28,7 @@ from frictionlab.methods.periodic.maps.rates import (
     as_memory,
     fill_rates,
     load_on,
+    rows_of,
     springs_at,
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
@@ -35,6 +37,23 @@ from frictionlab.scene.body import BodyNumbers
 
 SIMULTANEOUS = 6
 """From the stage before this one on, all are at the end of the step: its sine and cosine serve them all."""
+
+
+@fast
+def _alone(body: BodyNumbers, k: int, h: float) -> float:
+    """What the solve of a stage makes of one relaxing force by itself."""
+    return 1.0 / (1.0 / (GAMMA * h) + body.relaxing.rate[k])
+
+
+def _yielded_by_springs(body: BodyNumbers, h: float) -> float:
+    total = 0.0
+    for k in range(elements_of(body)):
+        total += _alone(body, k, h) * body.relaxing.stiffness[k]
+    return total
+
+
+_yielded = by_relaxing(lambda body, h: 0.0, _yielded_by_springs)
+"""_yielded(body, h): by how much relaxing forces grow with the velocity along x1, within a stage."""
 
 
 @fast
@@ -54,8 +73,9 @@ def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
         keep(work.factors, 2 * k, alone, like)
         keep(work.factors, 2 * k + 1, moved, like)
     # the mass, with its springs at the end of the step: y' = u makes them gamma h K in the block of u
-    mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean
-    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split, like)
+    half = 0.5 * _yielded(body, h)
+    mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean + half
+    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split + half, like)
     keep(
         work.factors,
         2 * n,
@@ -73,9 +93,9 @@ _stretched = by_dimension(
 
 
 @fast
-def _argument(i: int, law: Any, work: Work) -> None:
+def _argument(i: int, flow: Flow, work: Work) -> None:
     """Where stage i asks for rates: the start and what the stages before it add."""
-    size = MEMORY + count_of(law)
+    size = rows_of(flow)
     for row in range(size):
         work.stage[row] = work.start[row]
     for j in range(i):
@@ -85,9 +105,9 @@ def _argument(i: int, law: Any, work: Work) -> None:
 
 
 @fast
-def _right_side(i: int, law: Any, h: float, work: Work) -> None:
+def _right_side(i: int, flow: Flow, h: float, work: Work) -> None:
     """Add to the rates what the stages before i and the slope in time bring to the right-hand sides."""
-    size, late, per = MEMORY + count_of(law), h * SLOPES[i], 1.0 / h
+    size, late, per = rows_of(flow), h * SLOPES[i], 1.0 / h
     for row in range(size):
         work.rates[row] = work.rates[row] + late * work.slope[row]
     for j in range(i):
@@ -96,11 +116,35 @@ def _right_side(i: int, law: Any, h: float, work: Work) -> None:
             work.rates[row] = work.rates[row] + share * work.increments[size * j + row]
 
 
+def _relaxed_springs(flow: Flow, i: int, h: float, work: Work) -> float:
+    first, total = rows_of(flow) * (i + 1) - elements_of(flow.body), 0.0
+    for k in range(elements_of(flow.body)):
+        alone = _alone(flow.body, k, h) * work.rates[rows_of(flow) - elements_of(flow.body) + k]
+        work.increments[first + k] = alone
+        total += alone.real
+    return total
+
+
+_relaxed = by_relaxing(lambda flow, i, h, work: 0.0, _relaxed_springs)
+"""_relaxed(flow, i, h, work): relaxing forces at the velocity kept, their sum; left in the increments of stage i."""
+
+
+def _stretched_springs(flow: Flow, i: int, h: float, u: Any, work: Work) -> None:
+    first = rows_of(flow) * (i + 1) - elements_of(flow.body)
+    for k in range(elements_of(flow.body)):
+        stretched = _alone(flow.body, k, h) * flow.body.relaxing.stiffness[k] * u.real
+        work.increments[first + k] = work.increments[first + k] + stretched
+
+
+_stretch = by_relaxing(lambda flow, i, h, u, work: None, _stretched_springs)
+"""_stretch(flow, i, h, u, work): add what the change u of velocity makes of them."""
+
+
 @fast
 def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
     """The increments of stage i from its right-hand sides in ``work.rates``."""
     n, body = count_of(flow.law), flow.body
-    first = (MEMORY + n) * i
+    first = rows_of(flow) * i
     # each number with the velocity kept, then the mass, then what its change of velocity adds to each number
     alone = 0.0 * like  # friction of what the deflections would do if the mass kept its velocity
     for k in range(n):
@@ -109,6 +153,7 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
         alone = alone + apply(block(work.jacobian, 3 * k + 2, like), moved)
     right = (
         work.rates[U]
+        - along_x1(_relaxed(flow, i, h, work), like)
         - GAMMA * h * _stretched(springs_at(flow, work), work.rates[Y])
         - load_on(body, instant_near(flow, flow.anchor)) * alone
     )
@@ -121,6 +166,7 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
     for k in range(n):
         moved = apply(block(work.factors, 2 * k + 1, like), u)
         work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
+    _stretch(flow, i, h, u, work)
 
 
 square = by_dimension(lambda x: x * x, lambda x: x.real * x.real + x.imag * x.imag)
@@ -160,12 +206,14 @@ _unit = by_scalars(lambda flow, k, work, like: work.unit[k], _unit_of_impulse)
 @inner
 def _error(flow: Flow, work: Work, like: Any) -> float:
     """The difference to the embedded method of order 4 in the norm of energy, the impulse's too."""
-    n, body = count_of(flow.law), flow.body
-    last = (MEMORY + n) * (STAGES - 1)
+    n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
+    last = rows_of(flow) * (STAGES - 1)
     error = _elastic(body, work.increments[last + Y]) + square(work.increments[last + U])
     error += square(body.normal_load * work.increments[last + IMPULSE])
     for k in range(n):
         error += square(_unit(flow, k, work, like) * work.increments[last + MEMORY + k])
+    for k in range(m):
+        error += square(energy_unit(body, k) * work.increments[last + MEMORY + n + k])
     return math.sqrt(error)
 
 
@@ -175,22 +223,22 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
 
     It starts at the anchor of the flow. The error is infinite where a scalar has left its set on the way.
     """
-    law, n = flow.law, count_of(flow.law)
+    size = rows_of(flow)
     factor(flow, h, work, like)
     now = instant_near(flow, tau)
     for i in range(STAGES):
         # stages 6 to 8 are all at the end of the step: its sine and cosine serve them
-        _argument(i, law, work)
+        _argument(i, flow, work)
         if not _within(flow, work):
             return math.inf
         if 0 < i < SIMULTANEOUS:
             now = instant_near(flow, tau + TIMES[i] * h)
         fill_rates(flow, now, work, like)
-        _right_side(i, law, h, work)
+        _right_side(i, flow, h, work)
         _solve(i, flow, h, work, like)
     # the last increment is the difference to the embedded method, and ends the step
-    last = (MEMORY + n) * (STAGES - 1)
-    for row in range(MEMORY + n):
+    last = size * (STAGES - 1)
+    for row in range(size):
         work.end[row] = work.stage[row] + work.increments[last + row]
     return _error(flow, work, like)
 
@@ -198,7 +246,7 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
 @inner
 def bend(flow: Flow, work: Work) -> None:
     """Leave in ``work.bends`` how the last step runs between its ends, as ``within_step`` reads it."""
-    size = MEMORY + count_of(flow.law)
+    size = rows_of(flow)
     for i in range(3):
         for row in range(size):
             total = DENSE[i, 0] * work.increments[row]
@@ -210,7 +258,7 @@ def bend(flow: Flow, work: Work) -> None:
 @inner
 def within_step(flow: Flow, share: float, work: Work) -> None:
     """Leave in ``work.stage`` the state a share into the last step, whose bends are known."""
-    size, rest = MEMORY + count_of(flow.law), 1.0 - share
+    size, rest = rows_of(flow), 1.0 - share
     for row in range(size):
         bent = work.bends[row] + share * (work.bends[size + row] + share * work.bends[2 * size + row])
         work.stage[row] = rest * work.start[row] + share * (work.end[row] + rest * bent)

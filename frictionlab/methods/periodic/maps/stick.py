@@ -29,6 +29,7 @@ from frictionlab.dynamics.motion import (
     slopes_at,
     span,
 )
+from frictionlab.dynamics.relaxing import at_rest_until
 from frictionlab.methods.periodic.case import Case
 from frictionlab.scene.body import BodyNumbers
 
@@ -39,6 +40,7 @@ def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: An
     holds = law.static_friction()
     swell, longest, start = holds * normal_load_curvature(body), look_ahead(body), tau
     for _ in range(10_000):
+        body = at_rest_until(body, belt_speed, tau)
         now, there = instant_at(body, tau), x + belt_path(body, belt_speed, start, tau)
         held, rate, _bend = holding_force(body, belt_speed, now, there)
         curvature = holding_curvature(body, belt_speed, there) + swell

@@ -71,7 +71,8 @@ def _with_springs(body: BodyNumbers, relaxing: Relaxing) -> BodyNumbers:
 
 
 @fast
-def _with_force(body: BodyNumbers, force: Any, since: float) -> BodyNumbers:
+def with_force(body: BodyNumbers, force: Any, since: float) -> BodyNumbers:
+    """The body which knows its relaxing forces at a time."""
     old = body.relaxing
     relaxing = Relaxing(old.stiffness, old.rate, force, since, old.hardest, old.lasting, old.fastest)
     return _with_springs(body, relaxing)
@@ -135,7 +136,7 @@ def reference_force(body: BodyNumbers, tau: float) -> Any:
 
 
 def _carrying(body: BodyNumbers, force: Any, tau: float) -> BodyNumbers:
-    return _with_force(body, force + reference_force(body, tau), tau)
+    return with_force(body, force + reference_force(body, tau), tau)
 
 
 carrying = by_relaxing(lambda body, force, tau: body, _carrying)
@@ -186,7 +187,7 @@ def _forces_at_rest(body: BodyNumbers, belt_speed: float, tau: float) -> Any:
 
 at_rest_until = by_relaxing(
     lambda body, belt_speed, tau: body,
-    lambda body, belt_speed, tau: _with_force(body, _forces_at_rest(body, belt_speed, tau), tau),
+    lambda body, belt_speed, tau: with_force(body, _forces_at_rest(body, belt_speed, tau), tau),
 )
 """at_rest_until(body, belt_speed, tau): the body which knows its forces then, at rest since it last did."""
 

@@ -20,8 +20,8 @@ from frictionlab.scene.scene import Scene
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
 """From the cheapest method to the most general one."""
-FOR_MEMORY: tuple[Method, ...] = (RelayLocus(),)
-"""For bodies that remember, which none of those takes."""
+FOR_MEMORY: tuple[Method, ...] = (RelayLocus(), Shooting())
+"""For bodies that remember."""
 
 
 def _methods_for(scene: Scene) -> tuple[Method, ...]:
@@ -29,7 +29,7 @@ def _methods_for(scene: Scene) -> tuple[Method, ...]:
 
 
 class Auto(Method):
-    """Tries exact, then shooting, and relay_locus for a body that remembers, and says why.
+    """Tries exact, then shooting, of a body that remembers relay_locus first, and says why.
 
     One method solves a whole curve, since a change inside a curve would look like physics. An answer whose error is
     above the tolerance counts as failed.
@@ -54,6 +54,7 @@ class Auto(Method):
             reason = method.refusal(scene, law)
             if reason is None:
                 why = against[-1].split(";")[0] if against else ModelWord.CHEAPEST.sentence
+                why = ModelWord.BEYOND_LOCUS.sentence if against and scene.remembers else why
                 return method, f"cheapest method that applies: {why}"
             against.append(reason)
         return None, "; ".join(dict.fromkeys(part for reason in against for part in reason.split("; ")))

@@ -13,6 +13,7 @@ from frictionlab.compile.dispatch import (
     as_argument,
     by_contact,
     by_law,
+    by_relaxing,
     by_springs,
     by_stepper,
     by_variation,
@@ -42,6 +43,7 @@ from frictionlab.dynamics.motion import (
     slip,
     slopes_at,
 )
+from frictionlab.dynamics.relaxing import elements_of, with_force
 from frictionlab.dynamics.step_size import growth_of
 from frictionlab.methods.periodic.maps.memory_state import pulled
 from frictionlab.numerics.steppers import dop853, exponential, rk4
@@ -330,7 +332,7 @@ def _by_sdirk2(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     return end
 
 
-advance = by_stepper(
+_advance = by_stepper(
     {
         Moreau: _by_moreau,
         Rk4: _by_rk4,
@@ -338,6 +340,41 @@ advance = by_stepper(
         Exponential: _by_exponential,
         Sdirk2: _by_sdirk2,
     }
+)
+
+
+@inner
+def first_force(law: Any) -> int:
+    """Where in what is remembered the forces of what of the body relaxes begin, behind those of the contact."""
+    return max(1, count_of(law))
+
+
+def _advance_with_forces(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
+    """Forces first to the middle of the step, at the velocity of its start; at the end by the mean of both."""
+    law, body, memory, ahead = problem.law, problem.body, problem.memory, problem.ahead
+    first, pull = first_force(law), 0.0
+    for k in range(elements_of(body)):
+        pull += _relaxed(body, k, memory[first + k].real, start.v.real, 0.5 * h)
+    pulled = with_force(body, pull, start.tau)
+    stepped = MarchProblem(law, pulled, problem.belt_speed, problem.stepper, problem.grid, memory, ahead)
+    end = _advance(stepped, start, h)
+    for k in range(elements_of(body)):
+        mean = 0.5 * (start.v.real + end.v.real)
+        ahead[first + k] = _relaxed(body, k, memory[first + k].real, mean, h) + 0.0 * memory[first + k]
+    return end
+
+
+@inner
+def _relaxed(body: BodyNumbers, k: int, force: float, velocity: float, lasts: float) -> float:
+    """One force after a while at this velocity."""
+    rate = body.relaxing.rate[k]
+    gone = -math.expm1(-rate * lasts)
+    return force + gone * (body.relaxing.stiffness[k] * velocity / rate - force)
+
+
+advance = by_relaxing(
+    lambda problem, start, h: _advance(problem, start, h),
+    _advance_with_forces,
 )
 """advance(problem, start, h): the end of a step."""
 

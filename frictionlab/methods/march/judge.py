@@ -161,7 +161,7 @@ class MarchedPoint:
             return False
         if law.memory_kind == "none":
             return not is_convergent(scene, law)
-        if scene.body_terms:
+        if scene.bends:
             return True
         if law.memory_kind == "scalars" or friction_falls(law):
             return True
@@ -177,7 +177,7 @@ class MarchedPoint:
         self._range(min(means), max(means), window)
         falls = self.law.memory_kind == "none" or friction_falls(self.law)
         why = "friction falls with speed: " if self._may_depend_on_start() and falls else ""
-        why = "springs and dashpots are not linear: " if self.scene.body_terms else why
+        why = "springs and dashpots are not linear: " if self.scene.bends else why
         if not why and arrivals[0].period == 0:
             why = "the motion is not periodic at any step: "
         self.reason = why + describe(arrivals, 6)

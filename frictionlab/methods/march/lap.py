@@ -16,7 +16,8 @@ from frictionlab.compile.decorators import embedded, inner
 from frictionlab.compile.dispatch import by_variation, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import in_piece, instant_at, piece_ends, pieces_of, slip
-from frictionlab.methods.march.adapters import MarchProblem, advance, note_step
+from frictionlab.dynamics.relaxing import elements_of
+from frictionlab.methods.march.adapters import MarchProblem, advance, first_force, note_step
 from frictionlab.numerics.steppers.step import StepEnd, StepStart
 from frictionlab.orbit.recorder import Track
 
@@ -164,6 +165,9 @@ def first_trace(w: Any) -> SlipTrace:
 def keep_memory(problem: MarchProblem) -> None:
     """What the law remembers at the end of a step is what it remembers at the start of the next."""
     for k in range(count_of(problem.law)):
+        problem.memory[k] = problem.ahead[k]
+    first = first_force(problem.law)
+    for k in range(first, first + elements_of(problem.body)):
         problem.memory[k] = problem.ahead[k]
 
 

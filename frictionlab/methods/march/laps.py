@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law, by_variation
-from frictionlab.compile.stack import count_of, items_of, room
+from frictionlab.compile.stack import items_of, room
 from frictionlab.dynamics.motion import (
     belt_advance,
     belt_velocity,
@@ -22,6 +22,7 @@ from frictionlab.dynamics.motion import (
     pieces_of,
     runs_away,
 )
+from frictionlab.dynamics.relaxing import hardest
 from frictionlab.dynamics.step_size import squared
 from frictionlab.methods.march.adapters import MarchProblem
 from frictionlab.methods.march.lap import (
@@ -258,7 +259,7 @@ def path_stuck(law: Any, body: BodyNumbers, settings: MarchSettings, lap: Lap) -
         return 0.0
     carried = belt_advance(body, settings.belt_speed)
     carries = abs(carried)
-    if carries == 0.0 or look_ahead(body) < 1e300:
+    if carries == 0.0 or look_ahead(body) < 1e300 or hardest(body) > 0.0:
         return 0.0
     drift = carries * (body.stiffness_mean + body.stiffness_split) / body.normal_load
     # Not beyond release: one lap less than what friction can hold allows.
@@ -274,10 +275,10 @@ def march_laps(
     # What acts and what is remembered are bare pointers to steppers: the first to an array kept until the end, the
     # others to this function's stack.
     grid, like = grid_of(body, settings, start.x), start.z[0]
-    memory, ahead = room(law, 1, 0, like), room(law, 1, 0, like)
+    memory, ahead = room(law, 1, 2, like), room(law, 1, 2, like)  # and a spring that relaxes
     problem = MarchProblem(law, body, settings.belt_speed, stepper, items_of(grid), memory, ahead)
     laps, track = laps_of(settings), track_of(settings.room)
-    for k in range(count_of(law)):
+    for k in range(start.z.size):
         memory[k] = start.z[k]
     keep_state(laps, 0, start.x, start.v, problem)
     # Lap by lap, each from where the last one ended and with the step that it ended with.

@@ -103,15 +103,15 @@ class March(Method):
         """Answer each scene by itself, from its own start."""
         assert scenes[0].normal_load is not None
         law = law.under_load(scenes[0].normal_load)
-        plan = self._plan(law)
+        plan = self._plan(law, scenes[0].remembers)
         return answers_of([MarchedPoint(scene, law, tolerance, plan) for scene in each_told(scenes)])
 
-    def _plan(self, law: FrictionLaw) -> Plan:
+    def _plan(self, law: FrictionLaw, remembers: bool) -> Plan:
         theta, stepper = self.theta or 0.5, self._stepper(law)
         return Plan(
             stepper=stepper,
             theta=theta,
-            order=STEPPERS[stepper].order(theta),
+            order=min(STEPPERS[stepper].order(theta), 2 if remembers else 8),  # forces of order two
             steps=self.steps,
             width=self.width or 0.01,
             smoothing=self.smoothing or "tanh",

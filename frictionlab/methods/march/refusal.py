@@ -14,10 +14,12 @@ from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, steppers_of
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
-from frictionlab.scene.parts import BENDING
+from frictionlab.scene.parts import BENDING, REMEMBERING
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.theory.springs import is_exact
 
+GRIDDED = [name for name, facts in STEPPERS.items() if facts.gridded]
 SEVERAL = "deflections", "scalars"
 """Kinds of memory that are several numbers, or no deflection."""
 
@@ -46,9 +48,11 @@ class Request:
 def reasons_against(asked: Request) -> Iterator[str]:
     """Every reason why march cannot do what is asked, the first to be mended first."""
     law, scene = asked.law, asked.scene
-    if reason := beyond_linear("march", scene, BENDING) or about_rest("march", scene):
+    if reason := beyond_linear("march", scene, (*BENDING, *REMEMBERING)) or about_rest("march", scene):
         yield reason
         return
+    if scene.remembers:
+        yield from _against_memory(asked)
     if not steppers_of(asked.kind):
         yield "march needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         return
@@ -63,6 +67,15 @@ def reasons_against(asked: Request) -> Iterator[str]:
     yield from _against_jumps(asked)
     yield from _against_rates(asked)
     yield from _against_so_few_steps(asked)
+
+
+def _against_memory(asked: Request) -> Iterator[str]:
+    if asked.scene.undriven:
+        yield "on a body that remembers march needs a drive"
+    elif not is_exact(asked.scene):
+        yield "of bodies that remember march follows a standard linear solid (relaxation of order 1); use shooting"
+    elif not asked.facts.gridded:
+        yield f"stepper {asked.stepper} does not follow a body that remembers; use {', '.join(GRIDDED)}"
 
 
 def _against_constant_contact(asked: Request) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -40,6 +41,7 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.theory.springs import mass_of
 
 UNMOVED = 2.0**100
 """Of friction in the norm of energy, where it moves no mass: rounding of a mass at rest is nothing beside it."""
@@ -91,7 +93,7 @@ class MarchRun:
     def __init__(self, scene: Scene, law: FrictionLaw, stepper: StepperName) -> None:
         self.scene, self.law, self.stepper, self.facts = scene, law, stepper, STEPPERS[stepper]
         self.unmoved = scene.degrees_of_freedom == 0
-        self.mass: Mass = unmoved_mass(scene) if self.unmoved else scene.mass()
+        self.mass: Mass = unmoved_mass(scene) if self.unmoved else mass_of(scene)
         self.through_rest = steps_through_rest(scene, law, self.facts)
         start = scene.initial
         starts_across = start is not None and (start.x2 != 0.0 or start.velocity2 != 0.0)
@@ -103,8 +105,9 @@ class MarchRun:
         self.lightest, self.heaviest = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
-        self._fresh = first_memory(scene, law)
-        self._spring = self._memory_stiffness()
+        relaxing = [] if self.unmoved or not self.mass.relaxing else self.mass.relaxing.stiffness
+        self._fresh = np.concatenate([first_memory(scene, law), np.zeros(len(relaxing))])
+        self._spring = np.concatenate([self._memory_stiffness(), [1.0 / each for each in relaxing]])
         self.start = self.place(scene.start if scene.undriven else scene.initial)
         # on a belt at rest the mass stays wherever a run left it
         self.forgets = scene.belt_speed != 0.0 or self.unmoved
@@ -131,7 +134,7 @@ class MarchRun:
     @property
     def follows_the_drive(self) -> bool:
         """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
-        if self.law.memory_kind != "none" or self.scene.body_terms:
+        if self.law.memory_kind != "none" or self.scene.bends:
             return False
         mass = self.mass
         damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
@@ -208,10 +211,16 @@ class MarchRun:
             self.law, self.facts, self.drive_period / pace.steps / lightest_contact(self.scene)
         )
 
+    @property
+    def _slowest(self) -> float:
+        """The longest time in which a force of what of the body remembers relaxes."""
+        relaxing: Any = () if self.unmoved else self.mass.relaxing
+        return 1.0 / min(relaxing.rate) if relaxing else 0.0
+
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
         damping = self.mass.damping if self.straight else min(self.mass.damping, self.mass.transverse_damping)
-        slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping)
+        slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping, self._slowest)
         return int(min(2000.0, max(50.0, slow / self.drive_period)))
 
     def _marched(self, pace: Resolution, way: MarchSettings, place: MarchState) -> MarchHistory:
@@ -324,7 +333,8 @@ class MarchRun:
         if march.progress.verdict == STALLED:
             led = self._apart(march, len(march.laps.impulse), len(march.laps.impulse) - self.window)
             return spread + 2.0 * led / self.unit
-        ends = (1.0 + self.mass.damping) * drift
+        lasting = 0.0 if self.unmoved or not self.mass.relaxing else self.mass.relaxing.lasting
+        ends = (1.0 + self.mass.damping + lasting * (1.0 + self._slowest)) * drift
         doubt = (
             2.0 if self.law.memory_kind == "none" else 4.0
         )  # with memory, orbits may part before they meet

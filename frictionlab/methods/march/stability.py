@@ -14,6 +14,7 @@ from frictionlab.methods.march.steppers import StepperFacts
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.linear import velocity_scale
+from frictionlab.theory.springs import mass_of
 
 MARGIN = 1.02
 """Steps used over the steps that a stability limit requires."""
@@ -179,9 +180,10 @@ def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
 
 def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
     """The largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
-    mass = scene.mass()
+    mass = mass_of(scene)
     heaviest = mass.normal_load * shares_of_load(scene)[1]
-    stiffness = max(mass.stiffness, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)
+    hardest = mass.relaxing.hardest if mass.relaxing else 0.0
+    stiffness = max(mass.stiffness + hardest, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)
     damping = max(mass.damping, mass.transverse_damping) + heaviest * contact_damping(scene, law)
     return max(math.sqrt(stiffness), damping)
 

@@ -65,7 +65,7 @@ class RelayLocus(Method):
         """Anything but Coulomb friction on a driven line, on a body that is linear and dissipates, shaken by
         sines."""
         if law.memory_kind != "none" or not law.constant_sliding_friction() or not law.monotone():
-            return "on a body with memory only Coulomb friction (without mu_static) is solved, by relay_locus"
+            return "relay_locus solves Coulomb friction alone, without mu_static"
         if reason := beyond_linear(self.name, scene, TAKEN):
             return reason
         if scene.degrees_of_freedom != 1:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import embedded
-from frictionlab.compile.dispatch import by_variation
+from frictionlab.compile.dispatch import by_relaxing, by_variation
 
 LOAD, NORMAL_LOAD, BELT, COLUMNS = 0, 1, 2, 3
 """Places in ``problem.grid``, which has COLUMNS numbers for every node of a lap of steps.
@@ -23,9 +23,16 @@ _belt = by_variation(lambda body, velocity: velocity.real, lambda body, velocity
 
 
 @embedded
-def load_at(problem: Any, k: int, part: int) -> Any:
-    """What drives the mass, at a node of the k-th step."""
+def _driven_by(problem: Any, k: int, part: int) -> Any:
     return problem.grid[COLUMNS * node(problem.body, k, part) + LOAD]
+
+
+load_at = by_relaxing(
+    lambda problem, k, part: _driven_by(problem, k, part),
+    lambda problem, k, part: _driven_by(problem, k, part) - problem.body.relaxing.force,
+)
+"""load_at(problem, k, part): what drives the mass, at a node of the k-th step; less the force of what of the body
+remembers in the middle of the step."""
 
 
 @embedded

@@ -18,6 +18,7 @@ from frictionlab.laws.dahl import Dahl
 from frictionlab.methods.auto import Auto
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.relay_locus.method import RelayLocus
+from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.harmonics import _phasors
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Body, Drive, Fractional, Initial, Relaxation, Scene, Transverse
@@ -211,13 +212,12 @@ def test_auto_takes_it_where_a_body_remembers_and_tells_what_it_cannot_do():
     scene = driven(10.0, 1.0, 0.1, 4.0, body=body)
 
     assert Auto().choice(scene, LAW)[0] == RelayLocus()
-    assert Auto().refusal(scene, Dahl(mu=0.4, stiffness=10.0)) == (
-        "on a body with memory only Coulomb friction (without mu_static) is solved, by relay_locus"
-    )
+    assert Auto().choice(scene, Dahl(mu=0.4, stiffness=10.0))[0] == Shooting()
+    assert "Coulomb friction alone" in RelayLocus().refusal(scene, Dahl(mu=0.4, stiffness=10.0))
     across = Transverse(natural_frequency=1.0, damping_ratio=0.1)
-    assert "one line" in Auto().refusal(scene.with_(transverse=across), LAW)
+    assert "one line" in RelayLocus().refusal(scene.with_(transverse=across), LAW)
     assert "drive" in Auto().refusal(scene.with_(drive=None, initial=Initial(x=1.0)), LAW)
     square = scene.with_(drive=Drive(amplitude=1.0, frequency=1.0, waveform="square"))
-    assert "sines" in Auto().refusal(square, LAW)
+    assert "sines" in RelayLocus().refusal(square, LAW)
     cubic = scene.with_(body=Body(relaxation=body.relaxation, cubic_stiffness=0.1))
-    assert Auto().refusal(cubic, LAW) == "relay_locus does not take body.cubic_stiffness"
+    assert RelayLocus().refusal(cubic, LAW) == "relay_locus does not take body.cubic_stiffness"

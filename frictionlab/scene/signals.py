@@ -102,8 +102,9 @@ class Signal(NamedTuple):
 
     def extremes(self, end: float) -> tuple[float, float]:
         """The least and the largest value over a period ``end``."""
-        if not self.waves and not self.pieces:
-            return 0.0, 0.0
+        if not self.pieces and len(self.waves) <= 1:
+            size = abs(self.waves[0].phasor) if self.waves else 0.0
+            return -size, size
         quickest = max((each.frequency for each in self.waves), default=0.0)
         edges = [0.0, *self.corners(end), end]
         low, high = math.inf, -math.inf
@@ -116,7 +117,7 @@ class Signal(NamedTuple):
             values = sum(
                 (_wave(each, tau) for each in self.waves), value + slope * (tau - 0.5 * (start + stop))
             )
-            low, high = min(low, -_highest(-values)), max(high, _highest(values))
+            low, high = min(low, -highest(-values)), max(high, highest(values))
         return low, high
 
 
@@ -125,7 +126,7 @@ def _wave(wave: Wave, tau: Floats) -> Floats:
     return wave.phasor.real * np.sin(angle) + wave.phasor.imag * np.cos(angle)
 
 
-def _highest(values: Floats) -> float:
+def highest(values: Floats) -> float:
     """The largest value; inside, the top of the parabola through it and its neighbours."""
     at = int(np.argmax(values))
     if not 0 < at < len(values) - 1:

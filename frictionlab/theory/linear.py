@@ -9,9 +9,10 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import EPSILON, Floats
-from frictionlab.scene.receptance import LinearBody, linear_body
+from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
+from frictionlab.theory.free_slip import answered, friction_free_slip
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
 
 _SINGULAR = 64.0 * EPSILON
@@ -93,7 +94,7 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
     signals = scene.signals()
     if scene.remembers:
         load = signals.load[0].plus(signals.normal_load.scaled(coefficient))
-        low, high = free_slip_signal(linear_body(scene), load, signals.belt[0], signals.period).extremes(
+        low, high = friction_free_slip(linear_body(scene), load, signals.belt[0], signals.period).extremes(
             signals.period
         )
         return high if scene.belt_speed >= 0.0 else -low
@@ -104,26 +105,6 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
             return math.inf
         slip = less(response, slip)
     return (slip if scene.belt_speed >= 0.0 else slip.negative()).maximum()
-
-
-HARMONICS_OF_CORNERS = 400
-"""Of a load that is not a sum of sines, on a body that remembers."""
-
-
-def free_slip_signal(body: LinearBody, load: Signal, belt: Signal, period: float) -> Signal:
-    """The slip velocity without friction on a belt of mean velocity zero, of a body of this frequency response."""
-    waves = load.waves
-    if load.pieces:
-        base = 2.0 * math.pi / period
-        every = [k * base for k in range(1, HARMONICS_OF_CORNERS + 1)]
-        waves += tuple(Wave(each, Signal((), load.pieces).harmonic(each, period)) for each in every)
-    return Signal(tuple(answered(body, each, 1) for each in waves)).plus(belt.scaled(-1.0))
-
-
-def answered(body: LinearBody, wave: Wave, order: int) -> Wave:
-    """x1 under a force of this wave, or its derivative of order 1."""
-    response = body.receptance(np.array([wave.frequency]))[0]
-    return Wave(wave.frequency, complex((1j * wave.frequency) ** order * response * wave.phasor))
 
 
 def less(first: Piecewise, second: Piecewise) -> Piecewise:

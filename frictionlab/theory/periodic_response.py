@@ -47,7 +47,7 @@ _WEIGHTS = _step * _y * (1.0 + np.exp(-_u)) / (1.0 + np.exp(-2.0 * np.pi * _y))
 
 
 class PeriodicResponse(NamedTuple):
-    """V', V and the integral W of V less its mean, of mean zero, as Chebyshev polynomials between ``edges``.
+    """V', V, the integral W of V less its mean and that of W, both of mean zero, in Chebyshev polynomials of panels.
 
     Panels 0 ... panels - 1 are equally long; with halvings > 0 the first is not used, and those from ``panels`` on
     are its right half, the right half of its left half and so on, the last one all that is left.
@@ -60,9 +60,17 @@ class PeriodicResponse(NamedTuple):
     rate: Floats
     value: Floats
     integral: Floats
+    twice: Floats
     lengths: Floats
     static: float
     error: float
+
+    def at(self, table: Floats, since: Floats) -> Floats:
+        """One of its tables these times in [0, period] after an impulse."""
+        starts, _, order = _panels(self.panels, self.halvings)
+        panel = order[np.searchsorted(starts[order], since / self.period, side="right") - 1]
+        z = 2.0 * (since - starts[panel] * self.period) / self.lengths[panel] - 1.0
+        return np.asarray(np.polynomial.chebyshev.chebval(z, table[panel].T, tensor=False))
 
 
 @lru_cache(maxsize=256)
@@ -83,8 +91,9 @@ def periodic_response(body: LinearBody, frequency: float) -> PeriodicResponse:
     less = value.copy()
     less[:, 0] -= static / period
     integral = _primitive(less, lengths, order, 0.0)
+    twice = _primitive(integral, lengths, order, 0.0)
     error = float(np.abs(rate[order, -2:]).max())
-    return PeriodicResponse(period, count, halvings, rate, value, integral, lengths, static, error)
+    return PeriodicResponse(period, count, halvings, rate, value, integral, twice, lengths, static, error)
 
 
 @lru_cache(maxsize=64)

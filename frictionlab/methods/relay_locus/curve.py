@@ -14,10 +14,12 @@ from frictionlab.methods.relay_locus.locus import (
     LocusSetting,
     jump,
     length_of,
+    load_jump,
     mean_of_friction,
     mode_before,
 )
-from frictionlab.methods.relay_locus.response import StepAnswer
+from frictionlab.methods.relay_locus.response import FreeWaves, StepAnswer, side_lag
+from frictionlab.methods.relay_locus.rest_rule import RestRule
 from frictionlab.methods.relay_locus.search import (
     FINE,
     NO_ROOT,
@@ -28,215 +30,321 @@ from frictionlab.methods.relay_locus.search import (
     distinct,
     empty_motion,
     frictionless,
-    guessed,
     rewritten,
     settle_instants,
     verdict_of,
     without_piece,
 )
-from frictionlab.numerics.linalg import solve_linear
+from frictionlab.numerics.linalg import eliminate
 from frictionlab.quantities import EPSILON
 
-IMPULSE, ERROR, COUNT, DEGREE, VERDICT, GUESSES, COLUMNS = range(7)
-STEPS, TIMES_FINER, FREE_STEPS = 64, 3, 256
-"""Of the coarsest guess in steps; how often it is doubled; those in which reversals of the motion without friction
-are sought, the first guess."""
-REPAIRS = 12
-LONGEST_REST = 6.0
-"""Radians of the quickest free motion in a part of a rest."""
-ENOUGH = 1e-13
-"""Share of the limit that friction in a rest may be off for a polynomial of too low a degree."""
+IMPULSE, ERROR, COUNT, DEGREE, VERDICT, COLUMNS = range(6)
+FREE_STEPS = 256
+"""In which reversals of the motion without friction are sought."""
+REPAIRS, WAY = 12, 100
+"""Of a motion; steps of belt speed on the way to one."""
+ENOUGH, ENOUGH_ON_THE_WAY = 1e-13, 1e-6
+"""Of the detail of a motion, and of those on the way to one."""
+
+
+class CurveScales(NamedTuple):
+    """A scale of velocities, the longest part of a rest, the error of the response, how large loads with corners are
+    beside jumps of friction, and the largest and the least slip without friction."""
+
+    scale: float
+    longest: float
+    error: float
+    corners: float
+    high: float
+    low: float
+
+
+class Detail(NamedTuple):
+    """Of friction in rests: the place of the rule, the longest part of a rest, and the share of the limit that
+    friction may be off for a polynomial of too low a degree."""
+
+    degree: int
+    longest: float
+    enough: float
+
+
+class FoundMotion(NamedTuple):
+    """A motion that was found: its instants without joints, how they move with the belt speed, and that; what its
+    rests ask for."""
+
+    times: Any
+    modes: Any
+    slopes: Any
+    speed: float
+    detail: Detail
+
+
+class Sought(NamedTuple):
+    """A motion, the detail of its rests, what is wrong with it, what is left at its instants and by how much they
+    move for a unit of it."""
+
+    setting: LocusSetting
+    detail: Detail
+    motion: Instants
+    verdict: Objection
+    left: Any
+    inverse: Any
 
 
 @njit
 def follow_curve(
-    response: StepAnswer, rules: Any, waves: Any, given: Any, curve: Any, out: Any, found: Any
+    response: StepAnswer,
+    rules: Any,
+    forcing: FreeWaves,
+    limit: float,
+    given: CurveScales,
+    curve: Any,
+    out: Any,
+    found: Any,
 ) -> None:
-    """Row i of ``out``: IMPULSE, the integral of friction over a period, to GUESSES for the belt speed i.
+    """Row i of ``out``: IMPULSE, the integral of friction over a period, to VERDICT for the belt speed i.
 
-    rules: of ascending degree. given: limit of friction, scale of velocities, quickest free motion, error of the
-    response. curve: belt speeds, and the places i in the order in which each is sought from the one before.
-    found [i]: times and modes of the instants and friction at the nodes of every rest, one row an instant.
+    rules: of ascending degree. curve: belt speeds, and the places i in the order in which each is sought from the one
+    before. found [i]: times and modes of the instants and friction at the nodes of every rest, one row an instant.
     """
     belt_speeds, order = curve
-    times, modes, before, speed = np.empty(0), np.empty(0), np.empty(0), 0.0
+    known = before = nothing_known(given.high, given)
     for k in range(order.size):
         i = order[k]
-        setting = LocusSetting(response, rules[0], waves, given[0], belt_speeds[i])
-        start = times
-        if before.size == times.size and k > 1:
-            step = belt_speeds[order[k - 1]] - speed
-            start = foreseen(
-                times, before, (belt_speeds[i] - belt_speeds[order[k - 1]]) / step, response.period
-            )
-        guesses, sought = 0, mended_motion(setting, rules, moved_to(setting, start, modes), given)
+        setting = LocusSetting(response, forcing, limit, belt_speeds[i])
+        if known.speed * belt_speeds[i] < 0.0 or k == 0:
+            known = before = nothing_known(given.high if belt_speeds[i] >= 0.0 else given.low, given)
+        sought = mended_motion(setting, rules, foreseen(setting, known, before), known.detail, given)
         if sought.verdict.kind != FINE:
-            sought = mended_motion(setting, rules, frictionless(setting, FREE_STEPS), given)
-        while sought.verdict.kind != FINE and guesses <= TIMES_FINER:
-            sought = mended_motion(setting, rules, guessed(setting, STEPS * 2**guesses), given)
-            guesses += 1
-        motion = sought.motion
-        out[i, VERDICT], out[i, GUESSES], out[i, COUNT] = sought.verdict.kind, guesses, motion.times.size
+            guess = frictionless(setting, FREE_STEPS, False)
+            sought = mended_motion(setting, rules, guess, known.detail, given)
+        if sought.verdict.kind != FINE:
+            sought = approached(setting, rules, known, given)
+        out[i, VERDICT], out[i, COUNT] = sought.verdict.kind, sought.motion.times.size
         if sought.verdict.kind == FINE:
-            write_motion(sought, given, out[i], found[i])
-            out[i, DEGREE] = sought.degree
-            bare = distinct(setting, motion.times, motion.modes)
-            same = bare.modes.size == modes.size
-            for j in range(bare.modes.size):
-                same = same and bare.modes[j] == modes[j]
-            before = times if same else np.empty(0)
-            speed = belt_speeds[order[k - 1]] if k > 0 else 0.0
-            times, modes = bare.times, bare.modes
+            write_motion(sought, rules[sought.detail.degree], given, out[i], found[i])
+            out[i, DEGREE] = sought.detail.degree
+            before, known = known, known_from(sought, rules)
 
 
 @inner
-def foreseen(times: Any, before: Any, steps: float, period: float) -> Any:
-    """The instants so many steps on, if they keep their order and go on as from the motion before to this one."""
-    n = times.size
-    ahead = np.empty(n)
-    for j in range(n):
-        ahead[j] = times[j] + steps * (times[j] - before[j])
-    for j in range(n):
-        after = ahead[j + 1] if j < n - 1 else ahead[0] + period
-        if not 0.0 < steps < 3.0 or after - ahead[j] < 1e-6 * period:
-            return times
-    return ahead
-
-
-class Sought(NamedTuple):
-    """A motion, the place of the rule of its rests, what is wrong with it, and the derivatives by its instants of
-    what is left at each."""
-
-    setting: LocusSetting
-    degree: int
-    motion: Instants
-    verdict: Objection
-    derivatives: Any
+def nothing_known(speed: float, given: CurveScales) -> FoundMotion:
+    """No motion, from a belt that no slip overtakes."""
+    return FoundMotion(np.empty(0), np.empty(0), np.empty(0), speed, Detail(1, given.longest, ENOUGH))
 
 
 @inner
-def moved_to(setting: LocusSetting, times: Any, modes: Any) -> Instants:
-    """Instants, with room for friction of the setting's degree."""
-    motion = empty_motion(setting, times.size)
-    for j in range(times.size):
-        motion.times[j], motion.modes[j] = times[j], modes[j]
+def known_from(sought: Sought, rules: Any) -> FoundMotion:
+    """What was found."""
+    motion, n = sought.motion, sought.motion.times.size
+    times, modes, slopes, count = np.empty(n), np.empty(n), np.empty(n), 0
+    for j in range(n):
+        if motion.modes[j] != mode_before(motion, j):
+            times[count], modes[count], slopes[count] = motion.times[j], motion.modes[j], 0.0
+            for i in range(n):
+                # what is left there is slip, less by the belt speed, where slip ends
+                if mode_before(motion, i) != 0.0:
+                    slopes[count] = slopes[count] + sought.inverse[j, i]
+            count += 1
+    detail = Detail(degree_seen(sought, rules), sought.detail.longest, ENOUGH)
+    return FoundMotion(times[:count], modes[:count], slopes[:count], sought.setting.belt_speed, detail)
+
+
+@inner
+def foreseen(setting: LocusSetting, known: FoundMotion, before: FoundMotion) -> Instants:
+    """The instants at another belt speed if they keep their order, from one motion or two."""
+    n, period, step = known.times.size, setting.response.period, setting.belt_speed - known.speed
+    motion, alike = empty_motion(n, 0), before.times.size == n
+    for j in range(n):
+        motion.modes[j] = known.modes[j]
+        alike = alike and before.modes[j] == known.modes[j]
+    h = known.speed - before.speed
+    alike = alike and abs(step) < 3.0 * abs(h)
+    for j in range(n):
+        motion.times[j] = known.times[j] + known.slopes[j] * step
+        if alike:
+            # The cubic through both with its slopes; instants may have gone round the period.
+            apart = before.times[j] - known.times[j]
+            apart = apart - period * math.floor(apart / period + 0.5)
+            bend = apart + known.slopes[j] * h
+            twist = (before.slopes[j] - known.slopes[j]) * h + 2.0 * bend
+            s = step / h
+            motion.times[j] = motion.times[j] + s * s * (bend + twist + s * twist)
+    for j in range(n):
+        if length_of(motion, period, j) < 1e-6 * period:
+            for k in range(n):
+                motion.times[k] = known.times[k]
+            return motion
     return motion
 
 
 @inner
-def mended_motion(setting: LocusSetting, rules: Any, motion: Instants, given: Any) -> Sought:
+def approached(setting: LocusSetting, rules: Any, known: FoundMotion, given: CurveScales) -> Sought:
+    """The motion at the setting's belt speed by motions on the way from the known one, in steps as long as they can
+    be."""
+    end = setting.belt_speed
+    step, before = end - known.speed, known
+    sought = Sought(
+        setting, known.detail, empty_motion(0, 0), verdict_of(NO_ROOT, 0), np.empty(0), np.empty((0, 0))
+    )
+    for _ in range(WAY):
+        last = abs(step) >= abs(end - known.speed)
+        speed = end if last else known.speed + step
+        now = LocusSetting(setting.response, setting.forcing, setting.limit, speed)
+        guess = foreseen(now, known, before) if known.times.size else frictionless(now, FREE_STEPS, True)
+        enough = ENOUGH if last else ENOUGH_ON_THE_WAY
+        detail = Detail(known.detail.degree, known.detail.longest, enough)
+        sought = mended_motion(now, rules, guess, detail, given)
+        if sought.verdict.kind == FINE:
+            if last:
+                return sought
+            before, known = known, known_from(sought, rules)
+            step = 2.0 * step
+        else:
+            step = 0.5 * min(abs(step), abs(end - known.speed)) * math.copysign(1.0, step)
+    return sought
+
+
+@inner
+def mended_motion(
+    setting: LocusSetting, rules: Any, motion: Instants, detail: Detail, given: CurveScales
+) -> Sought:
     """The motion from a guess, after changes of its pieces that their own check asks for."""
-    verdict, least, derivatives = verdict_of(NO_ROOT, 0), 0, np.empty((0, 0))
+    last, period, left, inverse = (
+        verdict_of(NO_ROOT, 0),
+        setting.response.period,
+        np.empty(0),
+        np.empty((0, 0)),
+    )
     for _ in range(REPAIRS):
-        motion = with_joints(setting, distinct(setting, motion.times, motion.modes), LONGEST_REST / given[2])
+        motion = with_joints(setting, distinct(motion.times, motion.modes), detail.longest)
         n = motion.times.size
         if n < 2 or n >= MOST_INSTANTS:
-            return Sought(setting, 0, motion, verdict_of(NO_ROOT, 0), derivatives)
-        degree = max(least, degree_for(setting, motion, rules, given[2]))
-        setting = LocusSetting(
-            setting.response, rules[degree], setting.waves, setting.limit, setting.belt_speed
-        )
-        motion = moved_to(setting, motion.times, motion.modes)
+            break
+        rule, guess = rules[detail.degree], motion
+        motion = Instants(motion.times.copy(), motion.modes, np.zeros((n, rule.nodes.size)))
         derivatives, left = np.empty((n, n)), np.empty(n)
-        verdict = settle_instants(setting, motion, derivatives, left)
-        rough = verdict.kind == FINE and misfit_of_rests(setting, motion) > ENOUGH * setting.limit
-        if rough and degree < len(rules) - 1:
-            least = degree + 1
+        verdict = settle_instants(setting, rule, motion, derivatives, left)
+        rough = misfit_of_rests(setting, rule, motion) if verdict.kind == FINE else 0.0
+        if rough > detail.enough * setting.limit and detail.longest > 0.1 * given.longest:
+            higher = detail.degree < len(rules) - 1
+            longest = detail.longest if higher else 0.5 * detail.longest
+            detail = Detail(detail.degree + 1 if higher else detail.degree, longest, detail.enough)
             continue
         if verdict.kind == FINE:
-            verdict = checked(setting, motion, given[1])
+            verdict = checked(setting, rule, motion, given.scale)
         if verdict.kind == FINE:
-            return Sought(setting, degree, motion, verdict, derivatives)
-        if verdict.kind == VANISHED:
-            motion = without_piece(setting, motion, verdict.piece)
-        elif verdict.kind == WRONG:
-            motion = rewritten(setting, motion, verdict)
+            inverse = np.zeros((n, n))
+            for j in range(n):
+                inverse[j, j] = 1.0
+            eliminate(derivatives, inverse)
+            return Sought(setting, detail, motion, verdict, left, inverse)
+        if verdict.kind == VANISHED or verdict.kind == NO_ROOT:
+            motion = without_piece(period, guess, verdict.piece)
+        elif verdict.kind == WRONG and verdict != last:
+            motion, last = rewritten(period, motion, verdict), verdict
         else:
-            return Sought(setting, degree, motion, verdict, derivatives)
-    return Sought(setting, 0, motion, verdict_of(NO_ROOT, 0), derivatives)
+            break
+    return Sought(setting, detail, motion, verdict_of(NO_ROOT, 0), left, inverse)
 
 
 @inner
 def with_joints(setting: LocusSetting, motion: Instants, longest: float) -> Instants:
-    """The motion with its rests in parts no longer than this."""
-    period, count = setting.response.period, 0
-    for j in range(motion.times.size):
-        rests = motion.modes[j] == 0.0
-        count += max(1, math.ceil(length_of(motion, period, j) / longest)) if rests else 1
-    out, k = empty_motion(setting, count), 0
-    for j in range(motion.times.size):
-        length = length_of(motion, period, j)
-        parts = max(1, math.ceil(length / longest)) if motion.modes[j] == 0.0 else 1
-        for part in range(parts):
-            out.times[k], out.modes[k] = motion.times[j] + part * (length / parts), motion.modes[j]
-            k += 1
-    return out
+    """The motion with its rests in parts no longer than this, and without corners of the load inside."""
+    of, corners, n = setting.response, setting.forcing.corners, motion.times.size
+    times, modes, count = np.empty(MOST_INSTANTS), np.empty(MOST_INSTANTS), 0
+    for j in range(n):
+        length, done = length_of(motion, of.period, j), 0.0
+        if motion.modes[j] != 0.0 and count < MOST_INSTANTS:
+            times[count], modes[count] = motion.times[j], motion.modes[j]
+            count, done = count + 1, length
+        while done < length:
+            stop = length
+            for c in range(corners.shape[0]):
+                at = side_lag(of, corners[c, 0] - motion.times[j], False)
+                if done + 1e-9 * of.period < at < stop - 1e-9 * of.period:
+                    stop = at
+            parts = math.ceil((stop - done) / longest)
+            for part in range(parts):
+                if count < MOST_INSTANTS:
+                    times[count] = motion.times[j] + done + part * ((stop - done) / parts)
+                    modes[count] = motion.modes[j]
+                    count += 1
+            done = stop
+    return Instants(times[:count], modes[:count], np.empty((0, 0)))
 
 
 @inner
-def degree_for(setting: LocusSetting, motion: Instants, rules: Any, fastest: float) -> int:
-    """The place of the rule that a sine of the quickest free motion asks for in the longest rest."""
-    longest = 0.0
-    for j in range(motion.times.size):
-        if motion.modes[j] == 0.0:
-            longest = max(longest, length_of(motion, setting.response.period, j))
-    turn = 0.5 * longest * fastest
-    enough = 8.0 + 5.0 * math.sqrt(turn) + 1.5 * turn
-    for k in range(len(rules)):
-        if rules[k].nodes.size - 1 >= enough:
-            return k
-    return len(rules) - 1
+def friction_term(rule: RestRule, motion: Instants, j: int, m: int) -> float:
+    """Of the polynomial in the rest that begins at instant j, the coefficient m."""
+    total = 0.0
+    for k in range(rule.nodes.size):
+        total = total + rule.to_polynomials[m, k] * motion.friction[j, k]
+    return total
 
 
 @inner
-def misfit_of_rests(setting: LocusSetting, motion: Instants) -> float:
+def misfit_of_rests(setting: LocusSetting, rule: RestRule, motion: Instants) -> float:
     """The largest of the last two coefficients of the polynomials of friction in rests, and of its jumps at
-    joints."""
-    rule, worst = setting.rule, 0.0
+    joints where the load has none."""
+    n, worst = rule.nodes.size, 0.0
     for j in range(motion.times.size):
         if motion.modes[j] == 0.0:
             if mode_before(motion, j) == 0.0:
-                worst = max(worst, abs(jump(motion, setting.limit, j)))
-            for m in range(rule.nodes.size - 2, rule.nodes.size):
-                part = 0.0
-                for k in range(rule.nodes.size):
-                    part = part + rule.to_polynomials[m, k] * motion.friction[j, k]
-                worst = max(worst, abs(part))
+                beyond = jump(motion, setting.limit, j) - load_jump(setting, motion.times[j])
+                worst = max(worst, abs(beyond))
+            for m in range(n - 2, n):
+                worst = max(worst, abs(friction_term(rule, motion, j, m)))
     return worst
 
 
 @inner
-def write_motion(sought: Sought, given: Any, row: Any, found: Any) -> None:
+def degree_seen(sought: Sought, rules: Any) -> int:
+    """The place of the rule beyond which there is nothing but rounding in any rest."""
+    motion, rule, last = sought.motion, rules[sought.detail.degree], 0
+    rounding = 0.3 * sought.detail.enough * sought.setting.limit
+    for j in range(motion.times.size):
+        if motion.modes[j] == 0.0:
+            m = rule.nodes.size - 1
+            while m > last and abs(friction_term(rule, motion, j, m)) < rounding:
+                m -= 1
+            last = max(last, m)
+    for k in range(sought.detail.degree):
+        if rules[k].nodes.size - 1 >= last + 2:
+            return k
+    return sought.detail.degree
+
+
+@inner
+def write_motion(sought: Sought, rule: RestRule, given: CurveScales, row: Any, found: Any) -> None:
     """The impulse of friction and its error; the motion itself."""
-    setting, motion, rule = sought.setting, sought.motion, sought.setting.rule
+    setting, motion = sought.setting, sought.motion
     for j in range(motion.times.size):
         found[j, 0], found[j, 1] = motion.times[j], motion.modes[j]
         for k in range(rule.nodes.size):
             found[j, 2 + k] = motion.friction[j, k]
-    row[IMPULSE] = mean_of_friction(setting, motion) * setting.response.period
-    row[ERROR] = impulse_bound(sought, given)
+    row[IMPULSE] = mean_of_friction(setting, rule, motion) * setting.response.period
+    row[ERROR] = impulse_bound(sought, rule, given)
 
 
 @inner
-def impulse_bound(sought: Sought, given: Any) -> float:
-    """Of friction over a period: from that of the response and of rounding in what is left at every instant, carried
-    to the instants and times twice the jumps there, and from the degree of friction in rests."""
-    setting, motion = sought.setting, sought.motion
-    n, jumps = motion.times.size, 0.0
+def impulse_bound(sought: Sought, rule: RestRule, given: CurveScales) -> float:
+    """Of friction over a period: from that of the response, of rounding and of Newton's method in what is left at
+    every instant, carried to the instants and times twice the jumps there, from the degree of friction in rests and
+    from what was let pass."""
+    setting, motion, period = sought.setting, sought.motion, sought.setting.response.period
+    n, jumps = motion.times.size, given.corners
     for j in range(n):
         jumps = jumps + abs(jump(motion, setting.limit, j))
-    rough = misfit_of_rests(setting, motion)
-    of_slip = (
-        given[3] * jumps
-        + 8.0 * EPSILON * (given[1] + abs(setting.belt_speed))
-        + rough * setting.response.period
-    )
-    of_friction = 256.0 * EPSILON * setting.limit + rough
-    error = (4.0 * rough + 256.0 * EPSILON * n * setting.limit) * setting.response.period
-    for i in range(n):
-        work, moved = sought.derivatives.copy(), np.zeros(n)
-        moved[i] = of_friction if mode_before(motion, i) == 0.0 else of_slip
-        solve_linear(work, moved)
-        for j in range(n):
-            error = error + 2.0 * abs(moved[j] * jump(motion, setting.limit, j))
+    rough = misfit_of_rests(setting, rule, motion) + 256.0 * EPSILON * setting.limit
+    rounding = 8.0 * EPSILON * (given.scale + abs(setting.belt_speed))
+    of_slip = given.error * jumps + rounding + rough * period
+    of_friction = 4.0 * rough
+    error = (4.0 * rough + 256.0 * EPSILON * n * setting.limit) * period + 4.0 * sought.verdict.passed
+    for j in range(n):
+        moved = 0.0
+        for i in range(n):
+            allowed = of_friction if mode_before(motion, i) == 0.0 else of_slip
+            moved = moved + (allowed + abs(sought.left[i])) * abs(sought.inverse[j, i])
+        error = error + 2.0 * moved * abs(jump(motion, setting.limit, j))
     return error

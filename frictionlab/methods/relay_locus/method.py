@@ -14,7 +14,7 @@ from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Status
 from frictionlab.methods.relay_locus import curve
 from frictionlab.methods.relay_locus.locus import MOST_INSTANTS
 from frictionlab.methods.relay_locus.orbit import BesideFriction, make_locus_orbits
-from frictionlab.methods.relay_locus.response import response_of
+from frictionlab.methods.relay_locus.response import FreeWaves, response_of
 from frictionlab.methods.relay_locus.rest_rule import rest_rule
 from frictionlab.methods.relay_locus.search import FINE
 from frictionlab.methods.words import ModelWord
@@ -26,13 +26,16 @@ from frictionlab.scene.receptance_table import TabulatedBody
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal, Wave
-from frictionlab.theory.linear import answered, free_slip_signal
-from frictionlab.theory.periodic_response import periodic_response
+from frictionlab.theory.free_slip import answered, friction_free_slip
 
 TAKEN = (*REMEMBERING, BY_TABLE)
 """Keys of a body that leave it linear."""
-REST_DEGREES = (8, 12, 16, 20, 28)
+REST_DEGREES = (8, 11, 14, 17, 20, 24, 28)
 """Of friction in a rest."""
+RESPONSE_TERMS = (12, 16, 20, 24, 28, 32, 40, 48)
+"""Of the response over a rest."""
+LONGEST_REST, LONGEST_GRADED = 28.0, 6.0
+"""Radians of the quickest free motion in a part of a rest; and where it is graded."""
 GRADING = 4
 """Of rests where memory has powers that are no whole numbers: makes t^(2 - q) smooth enough at every order q."""
 UNSOLVED = "no motion found that is checked: slip of one sign between its instants, friction within its limit at rest"
@@ -118,9 +121,13 @@ class LocusCurve:
         self.mean, self.error = np.full(n, np.nan), np.full(n, np.nan)
         self.bounds, self.unique, self.seconds = np.full((n, 2), np.nan), [PROVED] * n, 0.0
 
-        self.response = response_of(periodic_response(self.body, 2.0 * math.pi / self.period))
-        self.free = free_slip_signal(self.body, self.load, self.belt, self.period)
-        self.rules = tuple(rest_rule(degree, 1 if self.body.smooth else GRADING) for degree in REST_DEGREES)
+        self.response = response_of(self.body, 2.0 * math.pi / self.period)
+        self.free = friction_free_slip(self.body, self.load, self.belt, self.period)
+        self.extremes = self.free.extremes(self.period)
+        self.forcing = FreeWaves(waves_of(self.free.waves), self.free.corners, self.free.steady)
+        self.longest = (LONGEST_REST if body.smooth else LONGEST_GRADED) / body.fastest
+        terms = terms_of_response(min(self.longest, self.period) * body.fastest)
+        self.rules = tuple(rest_rule(each, terms, 1 if body.smooth else GRADING) for each in REST_DEGREES)
         reversing = self._without_reversal()
         reversing = self._without_motion(reversing)
         if len(reversing):
@@ -167,7 +174,7 @@ class LocusCurve:
 
     def _without_reversal(self) -> Any:
         """Settle belts that no slip overtakes; the places of the others."""
-        low, high = self.free.extremes(self.period)
+        low, high = self.extremes
         forward, backward = self.belt_speeds >= max(high, 0.0), self.belt_speeds <= min(low, 0.0)
         alone = (forward | backward) & (self.belt_speeds != 0.0)
         self.mean[alone] = self.coefficient * np.sign(self.belt_speeds[alone])
@@ -193,11 +200,13 @@ class LocusCurve:
         """From the fastest belt of a direction to the slowest, each from its neighbour."""
         speeds = self.belt_speeds[places]
         order = places[np.lexsort((-np.abs(speeds), speeds < 0.0))]
-        low, high = self.free.extremes(self.period)
-        given = np.array([self.limit, max(high, -low), self.body.fastest, self.response.error])
+        low, high = self.extremes
+        corners = np.abs(self.free.corners)
+        loads = float(corners[:, 1].sum() + self.period * corners[:, 2].sum())
+        given = curve.CurveScales(max(high, -low), self.longest, self.response.error, loads, high, low)
         speeds = np.ascontiguousarray(self.belt_speeds)
         _, self.seconds = KernelCall(curve.follow_curve).timed(
-            self.response, self.rules, waves_of(self.free), given, (speeds, order), self.rows, self.found
+            self.response, self.rules, self.forcing, self.limit, given, (speeds, order), self.rows, self.found
         )
         fine = self.rows[places, curve.VERDICT] == FINE
         good, per_mean = places[fine], self.period * self.normal_load
@@ -223,7 +232,7 @@ class LocusCurve:
         track = KernelCall(make_locus_orbits)(
             self.response,
             self.rules,
-            waves_of(self.free),
+            self.forcing,
             around,
             np.array([self.limit, self.normal_load]),
             self.belt_speeds[chosen],
@@ -233,6 +242,13 @@ class LocusCurve:
         last = int(ends[-1]) if len(ends) else 0
         tau, x, v, friction, stick = (each[:last] for each in track[:5])
         return Orbits(tau, x, v, friction, stick, ends)
+
+
+def terms_of_response(radians: float) -> int:
+    """That a sine through so many radians asks for; the most where that is more."""
+    turn = 0.5 * radians
+    enough = 8.0 + 5.0 * math.sqrt(turn) + 1.5 * turn
+    return next((each for each in RESPONSE_TERMS if each >= enough), RESPONSE_TERMS[-1])
 
 
 def waves_of(signal: Signal) -> Floats:

@@ -11,12 +11,21 @@ from frictionlab.compile.decorators import inner, njit
 from frictionlab.methods.relay_locus.locus import (
     Instants,
     LocusSetting,
-    jump,
     length_of,
-    locus_slip,
     mean_of_friction,
+    slip_of_steps,
+    steps_of_friction,
 )
-from frictionlab.methods.relay_locus.response import StepAnswer, free_slip, integral_at
+from frictionlab.methods.relay_locus.response import (
+    INTEGRAL,
+    TWICE,
+    FreeWaves,
+    StepAnswer,
+    table_at,
+    waves_at,
+    wrapped,
+)
+from frictionlab.methods.relay_locus.rest_rule import RestRule
 from frictionlab.methods.relay_locus.search import empty_motion
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.recorder import Track, grown, track_of
@@ -28,8 +37,8 @@ PANELS = 24
 
 
 class BesideFriction(NamedTuple):
-    """Waves [n, 3] of x1 without friction, of the belt's vibration and of its path; smooth: whether the body is,
-    after a jump of force."""
+    """Waves [n, 3] of x1 under waves of the load, of the belt's vibration and of its path; smooth: whether the body
+    is, after a jump of force."""
 
     position: Any
     belt: Any
@@ -41,7 +50,7 @@ class BesideFriction(NamedTuple):
 def make_locus_orbits(
     response: StepAnswer,
     rules: Any,
-    waves: Any,
+    forcing: FreeWaves,
     around: BesideFriction,
     given: Any,
     belt_speeds: Any,
@@ -56,47 +65,47 @@ def make_locus_orbits(
     room, track = 64, track_of(64)
     for i in range(belt_speeds.size):
         if counts[i] >= 0:
-            setting = LocusSetting(response, rules[degrees[i]], waves, given[0], belt_speeds[i])
-            motion = as_found(setting, found[i], counts[i])
+            setting, rule = LocusSetting(response, forcing, given[0], belt_speeds[i]), rules[degrees[i]]
+            motion = as_found(setting, rule, found[i], counts[i])
             edges = panel_edges(setting, motion, around.smooth)
             if track.filled[0] + edges.size > room:
                 room = 2 * (room + edges.size)
                 track = grown(track, room)
-            note_locus(setting, motion, around, edges, given[1], track)
+            note_locus(setting, rule, motion, around, edges, given[1], track)
         ends[i] = track.filled[0]
     return track
 
 
 @inner
-def as_found(setting: LocusSetting, found: Any, count: int) -> Instants:
+def as_found(setting: LocusSetting, rule: RestRule, found: Any, count: int) -> Instants:
     """The motion that was written; without instants slip of one sign from tau = 0 on."""
-    motion, rule = empty_motion(setting, max(count, 1)), setting.rule
+    motion = empty_motion(max(count, 1), rule.nodes.size)
     motion.times[0], motion.modes[0] = 0.0, math.copysign(1.0, -setting.belt_speed)
     for j in range(count):
         motion.times[j], motion.modes[j] = found[j, 0], found[j, 1]
         if motion.modes[j] == 0.0:
             for k in range(rule.nodes.size):
                 motion.friction[j, k] = found[j, 2 + k]
-            for g in range(rule.places.size):
-                total = 0.0
-                for k in range(rule.nodes.size):
-                    total = total + rule.of_all[g, k] * motion.friction[j, k]
-                motion.pushes[j, g] = total
     return motion
 
 
 @inner
 def panel_edges(setting: LocusSetting, motion: Instants, smooth: bool) -> Any:
-    """Of a period from 0: at every instant, and closer after it where the body is not smooth; ascending."""
-    of, n = setting.response, motion.times.size
+    """Of a period from 0: at every instant and corner of the load, and closer after it where the body is not smooth;
+    ascending."""
+    of, corners, n = setting.response, setting.forcing.corners, motion.times.size
     largest = of.period / max(PANELS, of.panels)
-    edges, count = np.empty(2 + n * 64 + 4 * max(PANELS, of.panels)), 0
-    edges[0], edges[1], count = 0.0, of.period, 2
-    for j in range(n):
-        start, length = motion.times[j] - of.period * math.floor(motion.times[j] / of.period), 0.0
-        r, whole = 0.0, length_of(motion, of.period, j)
+    starts = np.empty(n + corners.shape[0])
+    for j in range(starts.size):
+        starts[j] = wrapped(of, motion.times[j] if j < n else corners[j - n, 0])
+    starts = np.sort(starts)
+    edges, count = np.empty(2 + starts.size * 64 + 4 * max(PANELS, of.panels)), 2
+    edges[0], edges[1] = 0.0, of.period
+    for j in range(starts.size):
+        whole = (starts[j + 1] if j < starts.size - 1 else starts[0] + of.period) - starts[j]
+        r = 0.0
         while r < whole and count < edges.size:
-            edges[count] = start + r if start + r < of.period else start + r - of.period
+            edges[count] = starts[j] + r if starts[j] + r < of.period else starts[j] + r - of.period
             count += 1
             length = largest if smooth else min(largest, max(FINEST_PANEL * of.period, r))
             r = r + min(
@@ -115,6 +124,7 @@ def panel_edges(setting: LocusSetting, motion: Instants, smooth: bool) -> Any:
 @inner
 def note_locus(
     setting: LocusSetting,
+    rule: RestRule,
     motion: Instants,
     around: BesideFriction,
     edges: Any,
@@ -123,7 +133,8 @@ def note_locus(
 ) -> None:
     """The panels between these edges on a track with room for them."""
     of = setting.response
-    mean = mean_of_friction(setting, motion)
+    mean = mean_of_friction(setting, rule, motion)
+    steps = steps_of_friction(setting, rule, motion)
     for k in range(edges.size - 1):
         panel, middle = track.filled[0], 0.5 * (edges[k] + edges[k + 1])
         j = instant_before(setting, motion, middle)
@@ -131,16 +142,16 @@ def note_locus(
         begun = motion.times[j] + of.period * math.floor((middle - motion.times[j]) / of.period)
         for node in range(NODES.size):
             t = middle + 0.5 * (edges[k + 1] - edges[k]) * NODES[node]
-            belt, _ = free_slip(around.belt, t)
+            belt, _ = waves_at(around.belt, t)
             if rests:
-                path, _ = free_slip(around.path, t)
-                before, _ = free_slip(around.path, begun)
-                x = position_at(setting, motion, around, begun, mean)
+                path, _ = waves_at(around.path, t)
+                before, _ = waves_at(around.path, begun)
+                x = position_at(setting, steps, around, begun, mean)
                 x = x + setting.belt_speed * (t - begun) + (path - before)
-                v, friction = setting.belt_speed + belt, friction_at(setting, motion, j, t - begun)
+                v, friction = setting.belt_speed + belt, friction_at(of.period, rule, motion, j, t - begun)
             else:
-                x = position_at(setting, motion, around, t, mean)
-                v = locus_slip(setting, motion, t) + (setting.belt_speed + belt)
+                x = position_at(setting, steps, around, t, mean)
+                v = slip_of_steps(setting, steps, t) + (setting.belt_speed + belt)
                 friction = setting.limit * motion.modes[j]
             track.tau[panel, node] = t
             track.x[panel, node], track.v[panel, node] = complex(x, 0.0), complex(v, 0.0)
@@ -162,10 +173,10 @@ def instant_before(setting: LocusSetting, motion: Instants, t: float) -> int:
 
 
 @inner
-def friction_at(setting: LocusSetting, motion: Instants, j: int, since: float) -> float:
+def friction_at(period: float, rule: RestRule, motion: Instants, j: int, since: float) -> float:
     """Friction a while after instant j, at which a rest begins: Clenshaw's sum in xi."""
-    rule, n = setting.rule, setting.rule.nodes.size
-    share = min(max(since / length_of(motion, setting.response.period, j), 0.0), 1.0)
+    n = rule.nodes.size
+    share = min(max(since / length_of(motion, period, j), 0.0), 1.0)
     x, last, now = 2.0 * share ** (1.0 / rule.grading) - 1.0, 0.0, 0.0
     for k in range(n - 1, -1, -1):
         coefficient = 0.0
@@ -178,19 +189,14 @@ def friction_at(setting: LocusSetting, motion: Instants, j: int, since: float) -
 
 
 @inner
-def position_at(
-    setting: LocusSetting, motion: Instants, around: BesideFriction, t: float, mean: float
-) -> float:
+def position_at(setting: LocusSetting, steps: Any, around: BesideFriction, t: float, mean: float) -> float:
     """x1 at a time in no rest; mean: of friction."""
-    of, rule = setting.response, setting.rule
-    x, _ = free_slip(around.position, t)
+    of, corners = setting.response, setting.forcing.corners
+    x, _ = waves_at(around.position, t)
     x = x - of.static * mean
-    for j in range(motion.times.size):
-        since = t - motion.times[j]
-        if motion.times.size > 1:
-            x = x - jump(motion, setting.limit, j) * integral_at(of, since)
-        if motion.modes[j] == 0.0:
-            length = length_of(motion, of.period, j)
-            for g in range(rule.places.size):
-                x = x - motion.pushes[j, g] * integral_at(of, since - length * rule.places[g])
+    for c in range(corners.shape[0]):
+        u = wrapped(of, t - corners[c, 0])
+        x = x + (corners[c, 1] * table_at(of, INTEGRAL, u) + corners[c, 2] * table_at(of, TWICE, u))
+    for j in range(steps.shape[0]):
+        x = x - steps[j, 1] * table_at(of, INTEGRAL, wrapped(of, t - steps[j, 0]))
     return x

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import Chebyshev, Polynomial
 
-from frictionlab.compile.decorators import inner
-from frictionlab.quantities import EPSILON
-from frictionlab.theory.periodic_response import TERMS, PeriodicResponse
+from frictionlab.compile.decorators import embedded, fast_embedded, inner
+from frictionlab.quantities import EPSILON, Floats
+from frictionlab.scene.receptance import LinearBody
+from frictionlab.theory.periodic_response import TERMS, periodic_response
+
+BEND, RATE, VALUE, INTEGRAL, TWICE = range(5)
+PARTS, POWERS = 4, 12
+"""Parts of a panel, and terms of a polynomial in one: there its terms fall four times as fast."""
 
 
 class StepAnswer(NamedTuple):
-    """A ``PeriodicResponse`` for kernels: V'', of which less is asked, V', V and its integral [panels, TERMS].
+    """A ``PeriodicResponse`` for kernels: tables [5, parts, POWERS] of V'' (BEND), of which less is asked, V', V, its
+    integral and the integral of that, in powers of z in [-1, 1] in every part of a panel.
 
     static: x1 under a unit force at rest. error: of V.
     """
@@ -21,90 +29,123 @@ class StepAnswer(NamedTuple):
     period: float
     panels: int
     halvings: int
-    bend: Any
-    rate: Any
-    value: Any
-    integral: Any
+    tables: Any
     static: float
     error: float
 
 
-def response_of(found: PeriodicResponse) -> StepAnswer:
-    """With V'' and the error of V."""
-    slopes = np.polynomial.chebyshev.chebder(found.rate, axis=1) * (2.0 / found.lengths[:, None])
-    bend = np.concatenate([slopes, np.zeros((len(slopes), 1))], axis=1)
+class FreeWaves(NamedTuple):
+    """The slip velocity without friction on a belt whose mean velocity is zero, and what has corners in it.
+
+    waves [n, 3]: frequency, sine and cosine parts. corners [n, 3]: times in [0, period), by how much the load jumps
+    there and by how much its slope does; steady: added, so that the mean velocity is zero.
+    """
+
+    waves: Any
+    corners: Any
+    steady: float
+
+
+def _to_powers() -> Floats:
+    """From Chebyshev coefficients of a panel to powers of z in its parts [PARTS, POWERS, TERMS], without rounding:
+    all its numbers are whole over powers of two."""
+    out = np.zeros((PARTS, POWERS, TERMS))
+    for part in range(PARTS):
+        inside = Polynomial([(2.0 * part + 1.0) / PARTS - 1.0, 1.0 / PARTS])
+        for k in range(TERMS):
+            powers = Chebyshev.basis(k).convert(kind=Polynomial)(inside).coef[:POWERS]
+            out[part, : len(powers), k] = powers
+    return out
+
+
+_TO_POWERS = _to_powers()
+
+
+@lru_cache(maxsize=64)
+def response_of(body: LinearBody, frequency: float) -> StepAnswer:
+    """Of forces that repeat with this circular frequency, with V'' and the error of V."""
+    found = periodic_response(body, frequency)
+
+    def powers(panels: Floats) -> Floats:
+        return np.ascontiguousarray(np.einsum("ptk,nk->npt", _TO_POWERS, panels).reshape(-1, POWERS))
+
+    rate = powers(found.rate)
+    slopes = np.arange(POWERS) * rate * (2.0 * PARTS / np.repeat(found.lengths, PARTS))[:, None]
+    bend = np.concatenate([slopes[:, 1:], np.zeros((len(slopes), 1))], axis=1)
     error = 4.0 * EPSILON * np.abs(found.value[:, 0]).max() + found.error * found.period / found.panels
-    parts = bend, found.rate, found.value, found.integral
-    return StepAnswer(found.period, found.panels, found.halvings, *parts, found.static, float(error))
+    tables = np.array([bend, rate, *map(powers, (found.value, found.integral, found.twice))])
+    return StepAnswer(found.period, found.panels, found.halvings, tables, found.static, float(error))
 
 
-@inner
+@embedded
 def place(of: StepAnswer, u: float) -> tuple[int, float]:
-    """The panel of a time in [0, period] and where it lies in it, in [-1, 1]: 0 is just after a jump, the period just
-    before the next."""
+    """The row of a time in [0, period] and z there: 0 is just after a jump, the period just before the next."""
     share = min(max(u / of.period, 0.0), 1.0) * of.panels
+    first = 0
     if of.halvings > 0 and share < 1.0:
         part, exponent = math.frexp(share)
         if part > 0.0 and -exponent < of.halvings:
-            return of.panels - exponent, 4.0 * part - 3.0
-        return of.panels + of.halvings, math.ldexp(share, of.halvings + 1) - 1.0
-    panel = min(int(share), of.panels - 1)
-    return panel, 2.0 * (share - panel) - 1.0
+            first, share = of.panels - exponent, 2.0 * part - 1.0
+        else:
+            first, share = of.panels + of.halvings, math.ldexp(share, of.halvings)
+    row = min(int(PARTS * share), PARTS * of.panels - 1)
+    return PARTS * first + row, 2.0 * (PARTS * share - row) - 1.0
 
 
-@inner
-def chebyshev(coefficients: Any, panel: int, x: float) -> float:
-    """Clenshaw's sum."""
-    last, now = 0.0, 0.0
-    for k in range(TERMS - 1, 0, -1):
-        last, now = now, 2.0 * x * now - last + coefficients[panel, k]
-    return x * now - last + coefficients[panel, 0]
+@fast_embedded
+def in_powers(tables: Any, which: int, row: int, z: float) -> float:
+    """The polynomial of a row of a table, even and odd powers side by side."""
+    y = z * z
+    even, odd = tables[which, row, POWERS - 2], tables[which, row, POWERS - 1]
+    for k in range(POWERS - 4, -1, -2):
+        even, odd = even * y + tables[which, row, k], odd * y + tables[which, row, k + 1]
+    return even + z * odd
 
 
-@inner
+@embedded
 def wrapped(of: StepAnswer, u: float) -> float:
     """A time difference in [0, period)."""
-    return u - of.period * math.floor(u / of.period)
+    return u if 0.0 <= u < of.period else u - of.period * math.floor(u / of.period)
 
 
-@inner
-def response_value(of: StepAnswer, u: float) -> float:
-    """V, at any time difference."""
-    panel, x = place(of, wrapped(of, u))
-    return chebyshev(of.value, panel, x)
+@embedded
+def table_at(of: StepAnswer, which: int, u: float) -> float:
+    """One of its tables a time in [0, period] after an impulse."""
+    row, z = place(of, u)
+    return in_powers(of.tables, which, row, z)
 
 
-@inner
-def rate_at(of: StepAnswer, u: float) -> float:
-    """V' a time in [0, period] after an impulse."""
-    panel, x = place(of, u)
-    return chebyshev(of.rate, panel, x)
-
-
-@inner
-def bend_at(of: StepAnswer, u: float) -> float:
-    """V'' a time in [0, period] after an impulse."""
-    panel, x = place(of, u)
-    return chebyshev(of.bend, panel, x)
-
-
-@inner
-def integral_at(of: StepAnswer, u: float) -> float:
-    """The integral of V less its mean, at any time difference."""
-    panel, x = place(of, wrapped(of, u))
-    return chebyshev(of.integral, panel, x)
-
-
-@inner
-def free_slip(waves: Any, t: float) -> tuple[float, float]:
-    """The slip velocity without friction on a belt whose mean velocity is zero, and its rate.
-
-    waves [n, 3]: frequency, sine and cosine parts.
-    """
-    slip, rate = 0.0, 0.0
+@embedded
+def waves_at(waves: Any, t: float) -> tuple[float, float]:
+    """The sum of waves [n, 3] and its rate."""
+    value, rate = 0.0, 0.0
     for j in range(waves.shape[0]):
         omega = waves[j, 0]
         sine, cosine = math.sin(omega * t), math.cos(omega * t)
-        slip = slip + (waves[j, 1] * sine + waves[j, 2] * cosine)
+        value = value + (waves[j, 1] * sine + waves[j, 2] * cosine)
         rate = rate + omega * (waves[j, 1] * cosine - waves[j, 2] * sine)
+    return value, rate
+
+
+@inner
+def free_slip(of: StepAnswer, forcing: FreeWaves, t: float, before: bool) -> tuple[float, float]:
+    """The slip velocity without friction on a belt whose mean velocity is zero, and its rate; where the load jumps,
+    that after or before."""
+    slip, rate = waves_at(forcing.waves, t)
+    slip = slip + forcing.steady
+    for c in range(forcing.corners.shape[0]):
+        u = side_lag(of, t - forcing.corners[c, 0], before)
+        row, z = place(of, u)
+        value, jump, bend = in_powers(of.tables, VALUE, row, z), forcing.corners[c, 1], forcing.corners[c, 2]
+        slip = slip + (jump * value + bend * in_powers(of.tables, INTEGRAL, row, z))
+        rate = rate + (jump * in_powers(of.tables, RATE, row, z) + bend * (value - of.static / of.period))
     return slip, rate
+
+
+@embedded
+def side_lag(of: StepAnswer, since: float, before: bool) -> float:
+    """A time after an instant in [0, period]; at the same instant 0 just after it and the period just before it."""
+    u = wrapped(of, since)
+    if u < 1e-13 * of.period or u > of.period * (1.0 - 1e-13):
+        return of.period if before else 0.0
+    return u

@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from frictionlab.quantities import Floats
 
@@ -19,13 +20,13 @@ from frictionlab.quantities import Floats
 class RestRule(NamedTuple):
     """Shares of a rest, and weights of the values of friction at its nodes.
 
-    nodes [N + 1]: shares (s - a)/(b - a) of the nodes. V' is seen as a polynomial of zeta, u = (b - a) zeta^grading
-    after a jump, and of u = period - (b - a) zeta before one: lags, leads [M]: shares u/(b - a) at which it is asked.
-    of_before, of_after [N + 1, M, N + 1]: weights of its values there and of friction in the integral over what lies
-    before and after a node. places [g], of_all [g, N + 1]: of the integral over the whole rest against any function.
-    end [N + 1]: of the rate of friction at b, times b - a. mean [N + 1]: of the mean over the rest. to_polynomials
-    [N + 1, N + 1]: of the coefficients of Chebyshev's polynomials of xi. samples, of_samples: shares, and weights of
-    the value there.
+    nodes [N + 1]: shares (s - a)/(b - a) of the nodes. V' is seen as a polynomial of M terms of zeta, u = (b - a)
+    zeta^grading after a jump, and of u = period - (b - a) zeta before one: lags, leads [M]: shares u/(b - a) at which
+    it is asked. of_before, of_after [M, (N + 1)^2]: weights of its values there, for each node and each value of
+    friction, in the integral over what lies before and after the node. places [g], of_all [g, N + 1]: of the integral
+    over the whole rest against any function. end [N + 1]: of the rate of friction at b, times b - a. mean [N + 1]: of
+    the mean over the rest. to_polynomials [N + 1, N + 1]: of the coefficients of Chebyshev's polynomials of xi.
+    samples, of_samples: shares, and weights of the value there.
     """
 
     grading: float
@@ -43,31 +44,46 @@ class RestRule(NamedTuple):
     of_samples: Any
 
 
-@lru_cache(maxsize=32)
-def rest_rule(degree: int, grading: int) -> RestRule:
-    """For friction of this degree."""
-    xi = 0.5 * (1.0 - np.cos(np.pi * np.arange(degree + 1) / degree))
-    nodes = xi**grading
-    lags, leads = nodes, xi
-    n = degree + 1
-    to = _coefficients(xi)
-    of_before, of_after = np.zeros((n, n, n)), np.zeros((n, n, n))
-    for i, node in enumerate(nodes):
-        at, weights = _over(xi, grading, (0.0, float(node)), 3 * n)
-        zeta = np.maximum(node - at, 0.0) ** (1.0 / grading)
-        of_before[i] = (_polynomials(zeta, degree) @ to).T @ weights
-        at, weights = _over(xi, grading, (float(node), 1.0), 3 * n)
-        of_after[i] = (_polynomials(at - node, degree) @ to).T @ weights
-    places, of_all = _over(xi, grading, (0.0, 1.0), n + 8 * (grading > 1))
-    end = _derivatives(xi, np.ones(1))[0] / grading
+@lru_cache(maxsize=64)
+def rest_rule(degree: int, terms: int, grading: int) -> RestRule:
+    """For friction of this degree, and V' of so many terms."""
+    xi, zeta = _points(degree), _points(terms - 1)
+    nodes, to = xi**grading, _coefficients(xi)
+    n, slopes = degree + 1, _slopes(degree) @ to
+    count = (n + terms) // 2 + 1 if grading == 1 else 3 * n
+    # Over what lies before every node, and after it: places of both [nodes, count], weights of values of friction.
+    before, of_before = _over(slopes, grading, np.zeros(n), nodes, count)
+    after, of_after = _over(slopes, grading, nodes, np.ones(n), count)
+    at_before = np.maximum(nodes[:, None] - before, 0.0) ** (1.0 / grading)
+    response = _coefficients(zeta)
+    seen_before = _polynomials(at_before, terms - 1) @ response
+    seen_after = _polynomials(after - nodes[:, None], terms - 1) @ response
+    count = (n + terms) // 2 + 1 + 8 * (grading > 1)
+    places, of_all = _over(slopes, grading, np.zeros(1), np.ones(1), count)
     # the mean over s of polynomials of xi: ds = grading xi^(grading - 1) dxi
     x, weight = _gauss(n + 2 * grading)
     mean = (weight * grading * x ** (grading - 1)) @ _polynomials(x, degree) @ to
     dense = 0.5 * (1.0 - np.cos(np.pi * np.arange(4 * degree + 1) / (4 * degree)))
-    parts: tuple[Any, ...] = (nodes, lags, leads, of_before, of_after, places, of_all, end, mean, to)
-    parts = *parts, dense**grading, _polynomials(dense, degree) @ to
-    arrays: list[Any] = [np.ascontiguousarray(each) for each in parts]
-    return RestRule(float(grading), *arrays)
+    arrays: list[Any] = [
+        nodes,
+        zeta**grading,
+        zeta,
+        np.einsum("igm,igk->mik", seen_before, of_before).reshape(terms, n * n),
+        np.einsum("igm,igk->mik", seen_after, of_after).reshape(terms, n * n),
+        places[0],
+        of_all[0],
+        _polynomials(np.ones(1), degree - 1)[0] @ slopes / grading,
+        mean,
+        to,
+        dense**grading,
+        _polynomials(dense, degree) @ to,
+    ]
+    return RestRule(float(grading), *map(np.ascontiguousarray, arrays))
+
+
+def _points(degree: int) -> Floats:
+    """Chebyshev's extreme points of [0, 1]."""
+    return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.arange(degree + 1) / degree)))
 
 
 def _gauss(count: int) -> tuple[Floats, Floats]:
@@ -76,27 +92,28 @@ def _gauss(count: int) -> tuple[Floats, Floats]:
     return 0.5 * (1.0 + x), 0.5 * weight
 
 
-def _over(xi: Floats, grading: int, span: tuple[float, float], count: int) -> tuple[Floats, Floats]:
-    """Places in a span of the rest, and weights of the values of friction there of the integral over dF.
+def _over(slopes: Floats, grading: int, start: Floats, stop: Floats, count: int) -> tuple[Floats, Floats]:
+    """Places in these spans of the rest [spans, count], and weights of the values of friction there of the integral
+    over dF [spans, count, N + 1].
 
     Closer at both ends by eta -> (integral of (eta (1 - eta))^(grading - 1)), so that xi at the beginning of the
     rest, and zeta at the other end, are as smooth as eta."""
     eta, weight = _gauss(count)
     power = np.polynomial.Polynomial([0.0, 1.0, -1.0]) ** (grading - 1)
     whole = power.integ()
-    width = span[1] - span[0]
-    at = span[0] + width * whole(eta) / whole(1.0)
-    if width == 0.0:
-        return at, np.zeros((count, len(xi)))
+    width = (stop - start)[:, None]
+    at = start[:, None] + width * whole(eta) / whole(1.0)
     x = at ** (1.0 / grading)
-    # dF = F'(xi) dxi, dxi = ds xi^(1 - grading)/grading
-    per = weight * width * power(eta) / whole(1.0) * x ** (1.0 - grading) / grading
-    return at, per[:, None] * _derivatives(xi, x)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # dF = F'(xi) dxi, dxi = ds xi^(1 - grading)/grading
+        per = weight * width * power(eta) / whole(1.0) * x ** (1.0 - grading) / grading
+    per = np.where(width > 0.0, per, 0.0)
+    return at, per[..., None] * (_polynomials(x, slopes.shape[0] - 1) @ slopes)
 
 
 def _polynomials(x: Floats, degree: int) -> Floats:
     """Chebyshev's polynomials of [0, 1]."""
-    return np.asarray(np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, degree))
+    return np.asarray(chebyshev.chebvander(2.0 * x - 1.0, degree))
 
 
 def _coefficients(xi: Floats) -> Floats:
@@ -104,9 +121,6 @@ def _coefficients(xi: Floats) -> Floats:
     return np.asarray(np.linalg.inv(_polynomials(xi, len(xi) - 1)))
 
 
-def _derivatives(xi: Floats, x: Floats) -> Floats:
-    """Rows of weights: the derivative at x of the polynomial through values at xi."""
-    slopes = np.polynomial.chebyshev.chebval(
-        2.0 * x - 1.0, np.polynomial.chebyshev.chebder(np.eye(len(xi)), axis=0, scl=2.0)
-    )
-    return np.asarray(slopes.T @ _coefficients(xi))
+def _slopes(degree: int) -> Floats:
+    """From coefficients of Chebyshev's polynomials of [0, 1] to those of the derivative."""
+    return np.asarray(chebyshev.chebder(np.eye(degree + 1), axis=0, scl=2.0))

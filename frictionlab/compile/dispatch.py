@@ -302,49 +302,32 @@ def by_stepper(bodies: dict[type, Any]) -> Any:
     return _overloaded(chosen, resolve, list(plain.values()))
 
 
-PATHLESS = "keeps_stiffness", "relaxing"
-"""Fields that, filled, leave no bristle a function of its slip path alone, or no mass that DOP853 alone moves."""
-
-
-def by_law(
-    of_sliding: Any,
-    of_bristle: Any,
-    of_path: Any = None,
-    of_deflections: Any = None,
-    of_scalars: Any = None,
-) -> Any:
+def by_law(of_sliding: Any, of_bristle: Any, of_deflections: Any = None, of_scalars: Any = None) -> Any:
     """A kernel function with several bodies of one signature, chosen by the law its first argument is or holds.
 
     The first argument is a law, or a record with a law in the field ``law``.
 
-    of_path is for bristle laws on the line (no argument is complex) whose path is exact, in a contact that follows
-    the normal load, on a body that remembers nothing; of_deflections for memory laws, of_scalars for those whose
-    memories have no direction; the choice is made when kernels are compiled, so that what a law does not need is
-    never compiled for it.
+    of_deflections is for memory laws, of_scalars for those whose memories have no direction; the choice is made when
+    kernels are compiled, so that what a law does not need is never compiled for it.
     """
     deflections = of_deflections or of_sliding
-    choices = of_sliding, of_bristle, of_path or of_bristle, deflections, of_scalars or deflections
+    choices = of_sliding, of_bristle, deflections, of_scalars or deflections
     bodies = [getattr(body, "py_func", body) for body in choices]
 
     def chosen(*arguments: Any) -> Any:
-        law, first = getattr(arguments[0], "law", arguments[0]), arguments[0]
-        inside = first if isinstance(first, tuple) else ()
-        planar = any(isinstance(argument, complex) for argument in (*arguments, *inside))
-        pathless = planar or any(_held(each, name) for each in arguments for name in PATHLESS)
-        return bodies[_which(type(law), law.structure(), pathless)](*arguments)
+        law = getattr(arguments[0], "law", arguments[0])
+        return bodies[_which(type(law), law.structure())](*arguments)
 
     def resolve(*types: Any) -> Any:
         law, structure, _ = law_of_numbers[_numbers_in(types[0]).instance_class]
-        planar = any(isinstance(kind, numba.types.Complex) for kind in (*types, *types[0].types))
-        pathless = planar or any(_is_filled(kind, name) for kind in types for name in PATHLESS)
-        return bodies[_which(law, structure, pathless)]
+        return bodies[_which(law, structure)]
 
     return _overloaded(chosen, resolve, bodies)
 
 
 def by_scalars(of_others: Any, of_scalars: Any) -> Any:
     """The same, chosen by whether what the law remembers has no direction."""
-    return by_law(of_others, of_others, None, of_others, of_scalars)
+    return by_law(of_others, of_others, of_others, of_scalars)
 
 
 def _numbers_in(first: Any) -> Any:
@@ -354,12 +337,10 @@ def _numbers_in(first: Any) -> Any:
     return first.types[first.fields.index("law")]
 
 
-def _which(law: type[FrictionLaw], structure: tuple[str, ...], pathless: bool) -> int:
+def _which(law: type[FrictionLaw], structure: tuple[str, ...]) -> int:
     if issubclass(law, MemoryLaw):
-        return 4 if "scalars" in structure else 3
-    if not issubclass(law, BristleLaw):
-        return 0
-    return 2 if "exact path" in structure and not pathless else 1
+        return 3 if "scalars" in structure else 2
+    return int(issubclass(law, BristleLaw))
 
 
 length = by_dimension(lambda v: math.fabs(v), lambda v: math.sqrt(v.real * v.real + v.imag * v.imag))

@@ -22,7 +22,7 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 
 INTERFACES: Any = SlidingLaw, BristleLaw, MemoryLaw
-ONLY_WITH = {"deflected": "exact path", "saturation_path": "exact path", "breakaway": "stick"}
+ONLY_WITH = {"breakaway": "stick"}
 """Methods that kernels call on laws of this structure alone."""
 
 

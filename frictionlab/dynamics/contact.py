@@ -31,7 +31,7 @@ def _bristle_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
     return _rate_of_a_bristle(law, memory, k, w)
 
 
-rate_of = by_law(_bristle_rate, _bristle_rate, None, lambda law, memory, k, w: law.rate(w, memory, k))
+rate_of = by_law(_bristle_rate, _bristle_rate, lambda law, memory, k, w: law.rate(w, memory, k))
 """rate_of(law, memory, k, w): the rate of the k-th memory at slip velocity w; a bristle law remembers one."""
 
 
@@ -58,7 +58,7 @@ def _bristle_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
 
 
 friction_of = by_law(
-    _bristle_friction, _bristle_friction, None, lambda law, memory, moving, w: law.friction(w, memory, moving)
+    _bristle_friction, _bristle_friction, lambda law, memory, moving, w: law.friction(w, memory, moving)
 )
 """friction_of(law, memory, moving, w): the friction coefficient at a memory that changes at these rates."""
 

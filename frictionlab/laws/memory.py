@@ -53,10 +53,6 @@ class BristleLaw(FrictionLaw, ABC):
         """``planar`` as a number for kernels."""
         return {"vectorial": VECTORIAL, "rotated": ROTATED, "per-axis": PER_AXIS}[self.planar]
 
-    def structure(self) -> tuple[str, ...]:
-        """Selects kernels that use ``deflected`` where the path is exact."""
-        return ("exact path",) if self.exact_path() else ()
-
     def count(self) -> int:
         """One."""
         return 1

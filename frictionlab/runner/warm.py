@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from frictionlab.compile.call import compiling_at_once
 from frictionlab.compile.notice import compiled_here
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw
 from frictionlab.runner.api import curve
 from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Drive, Scene, Slip, Transverse, TransverseSlip
@@ -69,14 +70,19 @@ def forms(kind: type[FrictionLaw]) -> list[FrictionLaw]:
     single: list[dict[str, Any]] = [{name: value} for name in numbers for value in _OTHERS]
     more = [{}, *single, *(one | other for one, other in combinations(single, 2))]
     given = [base | each for base in bases for each in more]
-    found: dict[tuple[str, ...], FrictionLaw] = {}
+    found: dict[tuple[Any, ...], FrictionLaw] = {}
     for each in given:
         try:
             law = kind.model_validate(each)
         except ValueError:
             continue
-        found.setdefault(law.structure(), law)
+        found.setdefault(_form(law), law)
     return list(found.values())
+
+
+def _form(law: FrictionLaw) -> tuple[Any, ...]:
+    """What kernels are chosen by."""
+    return *law.structure(), isinstance(law, BristleLaw) and law.exact_path()
 
 
 def _may_be_a_number(default: object) -> bool:

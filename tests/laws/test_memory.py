@@ -71,7 +71,7 @@ def _of_scalars(law: Any, like: Any) -> float:
     return 3.0
 
 
-_body = by_law(_of_sliding, _of_bristle, None, _of_deflections, _of_scalars)
+_body = by_law(_of_sliding, _of_bristle, _of_deflections, _of_scalars)
 
 
 @njit

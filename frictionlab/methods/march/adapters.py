@@ -194,7 +194,7 @@ def _of_scalars(problem: MarchProblem, w: Any, memory: Any, moving: Any, pressed
     return _of_several(problem, w, memory, moving)
 
 
-contact_friction = by_law(_of_slip_alone, _of_a_bristle, None, _of_deflections, _of_scalars)
+contact_friction = by_law(_of_slip_alone, _of_a_bristle, _of_deflections, _of_scalars)
 """contact_friction(problem, w, memory, moving, pressed): the coefficient at a slip velocity under a normal load;
 writes the memory's rates."""
 
@@ -211,9 +211,7 @@ def _project_deflections(problem: MarchProblem, pressed: float) -> None:
     pulled(problem.law, problem.ahead, room(problem.law, 1, 0, problem.ahead[0]))
 
 
-project_memory = by_law(
-    _nothing_to_project, _project_bristle, None, _project_deflections, _nothing_to_project
-)
+project_memory = by_law(_nothing_to_project, _project_bristle, _project_deflections, _nothing_to_project)
 """project_memory(problem, pressed): bring back what a step that ends under a normal load has left beyond the
 deflections that slip can lead to."""
 

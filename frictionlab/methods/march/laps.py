@@ -126,7 +126,7 @@ grid_of = by_variation(_grid_of_half_steps, _grid_of_pieces)
 # --- laps until the motion repeats --------------------------------------------------------------------------------
 
 
-largest_hold = by_law(lambda law: law.static_friction(), lambda law: 0.0, None, lambda law: 0.0)
+largest_hold = by_law(lambda law: law.static_friction(), lambda law: 0.0, lambda law: 0.0)
 """largest_hold(law): the coefficient up to which friction holds a mass at rest; with memory the contact gives."""
 
 

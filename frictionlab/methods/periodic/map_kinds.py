@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.words import ModelWord
 
 
@@ -38,4 +39,5 @@ def map_kind(law: FrictionLaw, pathless: bool) -> str:
 
     pathless: in the plane, or on a body that remembers.
     """
-    return "exact path" if "exact path" in law.structure() and not pathless else law.memory_kind
+    exact = not pathless and isinstance(law, BristleLaw) and law.exact_path()
+    return "exact path" if exact else law.memory_kind

@@ -69,7 +69,7 @@ def _size_with_memory(law: Any, like: Any) -> int:
     return 2 * dimension(like) + coordinates(law, like)
 
 
-size_of = by_law(lambda law, like: 2 * dimension(like), _size_with_memory, None, _size_with_memory)
+size_of = by_law(lambda law, like: 2 * dimension(like), _size_with_memory, _size_with_memory)
 """size_of(law, like): how many numbers a state is, but for what of the body relaxes."""
 
 
@@ -139,7 +139,7 @@ def _grain_of_memory(law: Any, body: BodyNumbers, like: Any) -> Any:
     return 2.0 * most, 10.0
 
 
-grain_of = by_law(_no_grain, _no_grain, None, _grain_of_memory)
+grain_of = by_law(_no_grain, _no_grain, _grain_of_memory)
 """grain_of(law, body, like): what the steps of a map leave in the mean even if two maps agree, per accuracy over the
 normal load: so much always, and so much over the span."""
 
@@ -175,7 +175,9 @@ def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> 
     return image
 
 
-def _image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+@inner
+def image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+    """``paced_image`` of a bristle on the line whose deflection the path of the slip tells."""
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like, contact_kind(body))
@@ -188,7 +190,7 @@ def _image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapp
     return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps, ())
 
 
-paced_image = by_law(_image_without_memory, _image_with_memory, _image_by_path, _image_with_memory)
+paced_image = by_law(_image_without_memory, _image_with_memory, _image_with_memory)
 """paced_image(case, state, residual, how): one span from a state, noted on a track with room, its steps kept or
 repeated; leaves image - state in residual.
 
@@ -215,7 +217,6 @@ _periods_at_rest = by_relaxing(
 rest_of = by_law(
     lambda law, body, belt_speed, y: _periods_at_rest(body, law, belt_speed, y),
     _rest_with_a_bristle,
-    None,
     _rest_with_a_bristle,
 )
 """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
@@ -240,7 +241,6 @@ remember = by_law(
     # a law without memory
     lambda law, body, state, z: None,
     _remember_a_deflection,
-    None,
     _remember_sliding,
 )
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from frictionlab.compile.call import Held, KernelCall
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.dynamics.motion import runs_away, swing_of
@@ -41,7 +41,7 @@ from frictionlab.methods.periodic.lane_record import record_in_lanes
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import unpack, whole_size_of
-from frictionlab.methods.periodic.setting import maps_of
+from frictionlab.methods.periodic.setting import held_maps
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.methods.under_way import once
 from frictionlab.orbit.panels import WEIGHTS
@@ -123,7 +123,7 @@ class PeriodicProblem:
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
-        self.maps = Held(maps_of, law, self.body)
+        self.maps = held_maps(law, self.body)
         linear = scene.is_harmonic and not self.body.bends
         constant = linear and not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)

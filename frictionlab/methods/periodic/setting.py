@@ -22,17 +22,21 @@ from frictionlab.compile.addresses import (
     machine_type,
     written_to,
 )
+from frictionlab.compile.call import Held
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import bare, belt_advance, changed, span, swing_of
 from frictionlab.dynamics.relaxing import lasting
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
+from frictionlab.methods.periodic.map_kinds import map_kind
 from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keeping, noting, pace_of, repeating
 from frictionlab.methods.periodic.period_map import (
     coarsest_of,
     grain_of,
+    image_by_path,
     paced_image,
     rest_of,
     start_of,
@@ -141,14 +145,17 @@ def _over(body: BodyNumbers, periods: float) -> BodyNumbers:
     return changed(body, periods, body.varying)
 
 
-@inner
-def _follow(
-    on: LawOnBody, belt_speed: float, periods: float, state: Any, residual: Any, how: Stepping
-) -> SpanImage:
-    case = case_of(on.law, _over(on.body, periods), belt_speed)
-    image = paced_image(case, state, residual, how)
-    impulse = image.friction_impulse + 0j
-    return SpanImage(impulse, image.stuck, image.closest, image.released, image.steps)
+def _followed_by(image_of_state: Any) -> Any:
+    @inner
+    def follow(
+        on: LawOnBody, belt_speed: float, periods: float, state: Any, residual: Any, how: Stepping
+    ) -> SpanImage:
+        case = case_of(on.law, _over(on.body, periods), belt_speed)
+        image = image_of_state(case, state, residual, how)
+        impulse = image.friction_impulse + 0j
+        return SpanImage(impulse, image.stuck, image.closest, image.released, image.steps)
+
+    return follow
 
 
 @inner
@@ -197,57 +204,70 @@ _START = Interface((_ROW, VECTOR, VECTOR, VECTOR), NUMBER)
 _SLIDE = Interface((NUMBER, _ROW), NUMBER)
 _ENDS = Interface((NUMBER, NUMBER, _ROW), TRUTH)
 _FREE = Interface((NUMBER, NUMBER, _TABLE), NUMBER)
-_addresses = addresses_of(
-    [
-        Addressed(_follow, _FOLLOW),
-        Addressed(_rest, _REST),
-        Addressed(_start, _START),
-        Addressed(_slide, _SLIDE),
-        Addressed(_ends, _ENDS),
-        Addressed(_guess, _SLIDE),
-        Addressed(_free, _FREE),
-    ]
-)
 _follow_at, _rest_at, _start_at = call_at(_FOLLOW), call_at(_REST), call_at(_START)
 _slide_at, _ends_at, _free_at = call_at(_SLIDE), call_at(_ENDS), call_at(_FREE)
 
 
-def _orders_with_memory(law: Any, body: BodyNumbers, like: Any) -> Orders:
-    """As many steps more as for ``FINER`` are the square root of two times as many; of order 5 there are many more
-    for finer maps, and where events are found is less exact."""
-    return Orders(5.7, 0.15, 1e-4, 3e-6, 3e-8)
-
-
-_orders = by_law(
-    lambda law, body, like: Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8),
-    _orders_with_memory,
-    # bristles never stick: their maps bend less, and cost more
-    lambda law, body, like: Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8),
-    _orders_with_memory,
-)
+_OF_ORDER_EIGHT = Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8)
+_BY_PATH = Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8)
+"""Bristles never stick: their maps bend less, and cost more."""
+_WITH_MEMORY = Orders(5.7, 0.15, 1e-4, 3e-6, 3e-8)
+"""As many steps more as for ``FINER`` are the square root of two times as many; of order 5 there are many more for
+finer maps, and where events are found is less exact."""
 
 
 def _remembers(law: Any) -> bool:
     return True
 
 
-_has_memory = by_law(lambda law: False, _remembers, None, _remembers)
+_has_memory = by_law(lambda law: False, _remembers, _remembers)
 
 
-@inner
-def maps_of(law: Any, body: BodyNumbers) -> Any:
-    """The law and the body where they lie, and their maps."""
-    on = LawOnBody(law, bare(body))
-    like = case_of(law, body, 0.0).like
-    room = np.empty(bytes_of(on), np.uint8)
-    at = _addresses(on)
-    grain, per_time = grain_of(law, on.body, like)
-    scales = scales_on(_over(body, 1.0))
-    return room, Maps(
-        written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6], whole_size_of(law, body, like),
-        _has_memory(law), dimension(like) == 2, scales, swing_of(on.body), _orders(law, on.body, like),
-        coarsest_of(law, on.body), grain, per_time,
-    )  # fmt: skip
+def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
+    """The kernel ``maps_of(law, body)``, its spans followed by ``image_of_state``."""
+    addresses = addresses_of(
+        [
+            Addressed(_followed_by(image_of_state), _FOLLOW),
+            Addressed(_rest, _REST),
+            Addressed(_start, _START),
+            Addressed(_slide, _SLIDE),
+            Addressed(_ends, _ENDS),
+            Addressed(_guess, _SLIDE),
+            Addressed(_free, _FREE),
+        ]
+    )
+
+    @inner
+    def maps_of(law: Any, body: BodyNumbers) -> Any:
+        on = LawOnBody(law, bare(body))
+        like = case_of(law, body, 0.0).like
+        room = np.empty(bytes_of(on), np.uint8)
+        at = addresses(on)
+        grain, per_time = grain_of(law, on.body, like)
+        scales = scales_on(_over(body, 1.0))
+        remembers = _has_memory(law)
+        return room, Maps(
+            written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
+            whole_size_of(law, body, like), remembers, dimension(like) == 2, scales, swing_of(on.body),
+            of_memory if remembers else of_sliding,
+            coarsest_of(law, on.body), grain, per_time,
+        )  # fmt: skip
+
+    return maps_of
+
+
+maps_of, maps_by_path = (
+    _made_by(paced_image, _OF_ORDER_EIGHT, _WITH_MEMORY),
+    _made_by(image_by_path, _BY_PATH, _BY_PATH),
+)
+"""(law, body): the law and the body where they lie, and their maps; by path: of a bristle whose path is exact."""
+
+
+def held_maps(law: FrictionLaw, body: BodyNumbers) -> Held:
+    """The maps of a law on a body, for other kernels to call."""
+    pathless = isinstance(body.reference_sine, complex) or bool(body.relaxing)
+    by_path = map_kind(law, pathless) == "exact path" and not getattr(body.varying, "keeps_stiffness", ())
+    return Held(maps_by_path if by_path else maps_of, law, body)
 
 
 # --- what a search asks ---------------------------------------------------------------------------------------------

@@ -39,7 +39,6 @@ def state_of_sliding(body: BodyNumbers, friction: float, like: Any) -> Any:
 memory_of_sliding = by_law(
     lambda law, belt_speed: 0.0,
     lambda law, belt_speed: math.copysign(1.0, belt_speed) * law.largest_deflection(),
-    None,
     lambda law, belt_speed: belt_speed,
 )
 """memory_of_sliding(law, belt_speed): what ``start_of`` is given, with the other sign, for a mass that slides on."""
@@ -123,5 +122,5 @@ def _ends_with_a_bristle(case: Case, state: Any) -> bool:
     return ends
 
 
-ends_sliding = by_law(_ends_without_bristle, _ends_with_a_bristle, None, _ends_without_bristle)
+ends_sliding = by_law(_ends_without_bristle, _ends_with_a_bristle, _ends_without_bristle)
 """ends_sliding(case, state): for bristles on a belt where slip need not reverse."""

@@ -24,7 +24,7 @@ from frictionlab.dynamics.motion import (
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.methods.periodic.period_map import size_of, start_of
-from frictionlab.methods.periodic.setting import Maps, Setting, maps_of, recorded_map
+from frictionlab.methods.periodic.setting import Maps, Setting, held_maps, recorded_map
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import BodyNumbers, Mass, on_the_line
@@ -136,7 +136,7 @@ class UndrivenPath:
 
     @cached_property
     def _maps(self) -> Held:
-        return Held(maps_of, self.law, self._body)
+        return held_maps(self.law, self._body)
 
     @cached_property
     def size(self) -> int:

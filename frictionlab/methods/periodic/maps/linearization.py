@@ -242,7 +242,7 @@ def _scalar(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
     keep(work.jacobian, 3 * k + 2, multiple(by_scalar, like), like)
 
 
-_by_memory = by_law(_bristle, _bristle, None, _deflection, _scalar)
+_by_memory = by_law(_bristle, _bristle, _deflection, _scalar)
 """_by_memory(flow, w, k, work, like): A and F of one number; the rates of all are in ``work.moving`` and stay."""
 
 

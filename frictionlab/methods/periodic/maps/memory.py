@@ -69,7 +69,7 @@ def _at_rest(law: Any, body: BodyNumbers) -> float:
     return law.sliding_friction(0.0)
 
 
-usual_friction = by_law(_at_rest, _at_rest, None, lambda law, body: law.sliding_friction(swing_of(body)))
+usual_friction = by_law(_at_rest, _at_rest, lambda law, body: law.sliding_friction(swing_of(body)))
 """usual_friction(law, body): the coefficient of steady sliding that accuracies are measured by."""
 
 

@@ -80,7 +80,7 @@ def _measure_scalars(law: Any, body: BodyNumbers, work: Work, like: Any) -> None
         work.memory[k] = here
 
 
-_measure_sizes = by_law(_measure_bristle, _measure_bristle, None, _measure_deflections, _measure_scalars)
+_measure_sizes = by_law(_measure_bristle, _measure_bristle, _measure_deflections, _measure_scalars)
 
 
 @inner
@@ -199,7 +199,7 @@ def _cut_back(law: Any, work: Work) -> None:
         work.start[MEMORY + k] = work.memory[k]
 
 
-cut_back = by_law(_leave, _leave, None, _cut_back, _leave)
+cut_back = by_law(_leave, _leave, _cut_back, _leave)
 """cut_back(law, work): bring the deflections at ``work.start`` back into the set that slip leads to."""
 
 

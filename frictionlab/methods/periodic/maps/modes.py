@@ -95,7 +95,7 @@ def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
     return Guard(number, unit * (limit * (1.0 + SLACK) - far), -unit * (loading / far + falls))
 
 
-breakaway = by_law(_no_breakaway, _no_breakaway, None, _breakaway, _no_breakaway)
+breakaway = by_law(_no_breakaway, _no_breakaway, _breakaway, _no_breakaway)
 """Guard of a deflection that sticks: zero where it begins to slip, open where none remembers that it sticks."""
 
 

@@ -160,7 +160,7 @@ def _never(law: Any) -> bool:
     return False
 
 
-remembers_stick = by_law(_never, _never, None, lambda law: law.remembers_stick(), _never)
+remembers_stick = by_law(_never, _never, lambda law: law.remembers_stick(), _never)
 """remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a memory."""
 
 

@@ -135,7 +135,6 @@ def _deflections(law: Any, work: Work, like: Any) -> None:
 measure_yield = by_law(
     _bristle,
     _bristle,
-    None,
     _deflections,
     # a scalar has no direction in which to yield
     lambda law, work, like: None,

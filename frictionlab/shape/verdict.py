@@ -27,6 +27,9 @@ from frictionlab.shape.interpolant import (
 
 __all__ = ["Estimate", "FrictionCurve", "Shape", "UnreadableCurve", "reduction", "shape_of"]
 
+_PARTS = 16
+"""Of the range, over which errors of an area do not cancel."""
+
 
 @dataclass(frozen=True)
 class Shape:
@@ -64,8 +67,8 @@ class Shape:
 def shape_of(curve: FrictionCurve, even: bool = False) -> Shape:
     """Every measure of a curve with its error. Raises UnreadableCurve.
 
-    even: whether points are evenly spaced in the angle of the interpolant, so that errors of their spacing at one
-    place do not cancel those at another by chance alone.
+    even: whether points are evenly spaced in the angle of the interpolant, so that errors of an area cancel between
+    neighbours.
     """
     check_points(curve)
     best = interpolant_of(curve)
@@ -139,17 +142,11 @@ def _point_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
 def _spacing_errors(curve: FrictionCurve, best: Interpolant, even: bool) -> Floats:
     """The distance to the interpolant of every second point; for a local measure the largest distance around it.
 
-    Twice the spacing makes the error of the interpolant at least four times as large. Of points that are even, twice
-    the change of each measure itself.
+    Twice the spacing makes the error of the interpolant at least four times as large.
     """
     every = slice((curve.speed.size - 1) % 2, None, 2)  # keep the last point, the end of the range
     columns = {name: getattr(curve, name)[every] for name in ("speed", "friction", "error")}
     coarse = interpolant_of(replace(curve, **columns))
-    if even:
-        fine, wide = (
-            np.array([_area(at.range), _area(at.window), at.half, at.initial]) for at in (best, coarse)
-        )
-        return 2.0 * np.abs(fine - wide)
     early = ABSCISSAE < 3.0 * STEP
     fine_rise, coarse_rise = float(best.range[early][-1]), float(coarse.range[early][-1])
     rises = min(fine_rise, coarse_rise) > EPSILON  # of the whole rise, which is one
@@ -157,7 +154,19 @@ def _spacing_errors(curve: FrictionCurve, best: Interpolant, even: bool) -> Floa
     away = np.abs(coarse.range - best.range)[np.abs(ABSCISSAE - 0.5) < 2.0 * STEP]
     bent = np.abs(scale * coarse.range - best.range)[early]
     local = [float(away.max()), 4.0 * float(bent.max()) / STEP**2 + abs((scale - 1.0) * best.initial)]
-    return np.array([*_apart(coarse, best)[:2], *local])
+    areas = _apart(coarse, best)[:2]
+    if even:
+        areas = np.array([_area_apart(*both) for both in zip(coarse[:2], best[:2], strict=True)])
+    return np.array([*areas, *local])
+
+
+def _area_apart(one: Floats, other: Floats) -> float:
+    """The difference of two areas, or the root of the sum of its squares over parts of the range.
+
+    Of points evenly spaced, errors of neighbours cancel, and those of far parts at most by chance.
+    """
+    parts = 2.0 * (AREA_WEIGHTS * (one - other)).reshape(_PARTS, -1).sum(axis=1)
+    return max(abs(float(parts.sum())), float(np.hypot.reduce(parts)))
 
 
 def _end_errors(curve: FrictionCurve, best: Interpolant) -> list[Floats]:

@@ -463,3 +463,17 @@ def test_a_table_without_curves_gives_an_empty_table_with_its_columns(family: pd
         rows = curve_table(table)
         assert rows.empty
         assert list(rows.columns) == list(curve_table(family).columns)
+
+
+@given(st.floats(0.1, 0.9), st.floats(0.02, 0.6))
+def test_of_points_evenly_spaced_the_area_has_a_smaller_error_that_covers_kinks(
+    kink: float, part: float
+) -> None:
+    speed = np.sin(0.5 * np.pi * np.array([0.125, 0.5, *range(1, 33)]) / 32)
+    friction = (1.0 - part) * np.arcsin(speed) * 2.0 / np.pi + part * np.minimum(speed / kink, 1.0)
+    curve = FrictionCurve(speed, friction, np.zeros(34), Estimate(0.0, 0.0), Estimate(1.0, 0.0), kinked=True)
+    area = 2.0 * ((1.0 - part) * (1.0 - 2.0 / np.pi) + part * (1.0 - 0.5 * kink)) - 1.0
+    even, usual = shape_of(curve, even=True).area, shape_of(curve).area
+
+    assert even.value == usual.value
+    assert abs(even.value - area) <= even.error < usual.error

@@ -50,13 +50,18 @@ class FreeSlip(NamedTuple):
 def friction_free_slip(body: LinearBody, load: Signal, belt: Signal, period: float) -> FreeSlip:
     """Of a body under this load, on a belt of this vibration, which has no corners."""
     waves = Signal(tuple(answered(body, each, 1) for each in load.waves)).plus(belt.scaled(-1.0))
-    corners = np.array([row for each in load.pieces for row in _corners(each, period)]).reshape(-1, 3)
-    corners = corners[np.any(corners[:, 1:] != 0.0, axis=1)]
+    corners = corners_of(load, period)
     if not len(corners):
         return FreeSlip(waves, corners, 0.0, None)
     response = periodic_response(body, 2.0 * math.pi / period)
     steady = -response.static * float(corners[:, 1].sum()) / period
     return FreeSlip(waves, corners[np.argsort(corners[:, 0], kind="stable")], steady, response)
+
+
+def corners_of(load: Signal, period: float) -> Floats:
+    """Times in [0, period), by how much the load jumps there and by how much its slope does [n, 3]."""
+    corners = np.array([row for each in load.pieces for row in _corners(each, period)]).reshape(-1, 3)
+    return np.asarray(corners[np.any(corners[:, 1:] != 0.0, axis=1)])
 
 
 def _corners(load: Segments, period: float) -> list[tuple[float, float, float]]:

@@ -26,7 +26,7 @@ from frictionlab.scene.receptance_table import TabulatedBody
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal, Wave
-from frictionlab.theory.free_slip import answered, friction_free_slip
+from frictionlab.theory.free_slip import answered, corners_of, friction_free_slip
 
 TAKEN = (*REMEMBERING, BY_TABLE)
 """Keys of a body that leave it linear."""
@@ -85,8 +85,8 @@ class RelayLocus(Method):
             )
         if signals.normal_load != Signal():
             return "relay_locus needs a normal load that does not change"
-        if signals.load[0].pieces or signals.belt[0].pieces:
-            return "relay_locus needs waveforms of sines: sine or {harmonics: [...]}"
+        if signals.belt[0].pieces or corners_of(signals.load[0], signals.period)[:, 1].any():
+            return "relay_locus needs waveforms of sines: sine or {harmonics: [...]}; a load may be a triangle, too"
         return None
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

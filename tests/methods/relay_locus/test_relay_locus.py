@@ -106,6 +106,24 @@ def test_waves_of_belt_and_load_have_the_mean_that_exact_finds():
         np.testing.assert_allclose(ours.columns[name], exact.columns[name], rtol=1e-9, atol=1e-9)
 
 
+@settings(max_examples=15)
+@given(plain_curves(), st.floats(0.0, 360.0))
+def test_a_triangle_has_the_mean_that_exact_finds(curve, phase):
+    plain, speeds = curve
+    scene = plain.with_(
+        drive=Drive(amplitude=1.0, frequency=plain.frequency, waveform="triangle", phase=phase)
+    )
+
+    ours, exact = answers(RelayLocus(), scene, speeds), answers(Exact(), scene, speeds)
+
+    assert ours.status == ["ok"] * len(speeds)
+    np.testing.assert_array_less(np.abs(ours.mean - exact.mean), np.minimum(ours.error + exact.error, 1e-11))
+    for name in ("stick_fraction", "energy_input", "velocity_amplitude"):
+        np.testing.assert_allclose(
+            ours.columns[name], exact.columns[name], rtol=1e-7, atol=1e-9, err_msg=name
+        )
+
+
 def test_order_one_is_a_dashpot():
     scene, speeds = driven(10.0, 1.0, 0.1, 4.0), [0.5, 5.0, 20.0, 24.0]
 

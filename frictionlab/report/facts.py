@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -21,12 +21,30 @@ from frictionlab.units.shown import as_shown
 
 
 class CurveRows(NamedTuple):
-    """The rows of one law and method that differ in belt speed alone; where: what else was swept, and its value."""
+    """The rows of one law and method that differ in belt speed alone.
+
+    where: what else was swept, and its value. table, places: where the rows are; no curve of many holds them itself.
+    """
 
     law: str
     method: str
     where: Mapping[str, Any]
-    rows: pd.DataFrame
+    table: pd.DataFrame
+    places: list[int]
+
+    @property
+    def rows(self) -> pd.DataFrame:
+        """All of them."""
+        return self.table.iloc[self.places]
+
+    def first(self, *names: str) -> dict[str, Any]:
+        """Of the first row what the table has of these columns."""
+        return {name: self.table[name].iat[self.places[0]] for name in names if name in self.table}
+
+    @property
+    def of(self) -> tuple[str, ...]:
+        """The law and the values, which curves by other methods have, too."""
+        return self.law, *map(str, self.where.values())
 
     @property
     def name(self) -> Markup:
@@ -94,11 +112,14 @@ class Facts:
         """Those of a table of this run, told apart by what is swept."""
         table = self._shown(table)
         told = [name for name in self.swept if name in table]
-        groups = table.groupby(["law", "method", *told], sort=False, dropna=False)
-        return [
-            CurveRows(str(law), str(method), dict(zip(told, values, strict=True)), rows)
-            for (law, method, *values), rows in groups
+        groups = table.groupby(["law", "method", *told], sort=False, dropna=False).indices
+        found = [
+            CurveRows(
+                str(law), str(method), dict(zip(told, values, strict=True)), table, sorted(places.tolist())
+            )
+            for (law, method, *values), places in groups.items()
         ]
+        return sorted(found, key=lambda curve: curve.places[0])
 
     @cached_property
     def _scales(self) -> dict[str, float]:
@@ -109,13 +130,15 @@ class Facts:
             found[curve.key] = float(ratios[ratios.abs() < float("inf")].median())
         return {key: scale for key, scale in found.items() if scale == scale}
 
-    def speed_in_given_units(self, curve: CurveRows, row: pd.Series, name: str) -> tuple[float, float]:
+    def speed_in_given_units(
+        self, curve: CurveRows, row: Mapping[str, Any], name: str
+    ) -> tuple[float, float]:
         """A belt speed of a row of a curve, and its error; 0 for that of a point."""
         scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
         return scale * float(row[name]), scale * float(row.get(f"{name}_error", 0.0))
 
 
-def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:
+def whose(curves: Sequence[CurveRows]) -> Iterator[list[Cell]]:
     """Of each curve its law, its method where there are several, and what tells it from the others."""
     several = len({curve.method for curve in curves}) > 1
-    return [[curve.law, curve.method if several else "", curve.name] for curve in curves]
+    return ([curve.law, curve.method if several else "", curve.name] for curve in curves)

@@ -61,7 +61,8 @@ def shape_sentence(run: Facts) -> Markup:
 
 def _end(run: Facts, found: Sequence[CurveRows]) -> Markup:
     """Where slip stops reversing: one belt speed for all, or between which; those known to more than themselves."""
-    ends = [run.speed_in_given_units(curve, curve.rows.iloc[0], "reversal_end") for curve in found]
+    name = "reversal_end"
+    ends = [run.speed_in_given_units(curve, curve.first(name, f"{name}_error"), name) for curve in found]
     known = [(value, error) for value, error in ends if error <= abs(value)]
     if not known:
         return Markup("Where slip stops reversing is left open by errors.")
@@ -84,10 +85,10 @@ def _why_not(curves: pd.DataFrame) -> str:
 
 def _verdicts(run: Facts, curves: pd.DataFrame) -> list[CurveRows]:
     """One for each law and set of swept values: of the first method that decides it, full ones first."""
-    found: dict[str, CurveRows] = {}
+    found: dict[tuple[str, ...], CurveRows] = {}
     read = run.curves_of(curves[curves["shape"].notna()])
     for curve in sorted(read, key=lambda curve: curve.method in run.reduced):
-        who = f"{curve.law}, {curve.name}"
+        who = curve.of
         if who not in found or (_shape(found[who]) == "undecided" and curve.method not in run.reduced):
             found[who] = curve
     return list(found.values())
@@ -95,12 +96,14 @@ def _verdicts(run: Facts, curves: pd.DataFrame) -> list[CurveRows]:
 
 def _otherwise(run: Facts, curves: pd.DataFrame, found: Sequence[CurveRows]) -> Markup:
     """Which reduced models have curves of another shape than the full ones."""
-    full = {f"{curve.law}, {curve.name}": _shape(curve) for curve in found}
+    if not run.reduced:
+        return Markup("")
+    full = {curve.of: _shape(curve) for curve in found}
     own = [each for each in run.curves_of(curves[curves["shape"].notna()]) if each.method in run.reduced]
     told = Markup("")
     for method in dict.fromkeys(each.method for each in own):
         of_it = [each for each in own if each.method == method]
-        others = [each for each in of_it if {_shape(each), full[f"{each.law}, {each.name}"]} in CONTRADICTORY]
+        others = [each for each in of_it if {_shape(each), full[each.of]} in CONTRADICTORY]
         if others:
             shapes = listed([*dict.fromkeys(_shape(each) for each in others)])
             which = (
@@ -117,7 +120,7 @@ def _otherwise(run: Facts, curves: pd.DataFrame, found: Sequence[CurveRows]) -> 
 
 
 def _shape(curve: CurveRows) -> str:
-    return str(curve.rows["shape"].iloc[0])
+    return str(curve.first("shape")["shape"])
 
 
 def _one(curve: CurveRows) -> Markup:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
@@ -17,6 +17,7 @@ from frictionlab.results.harmonic_table import harmonic_table
 from frictionlab.results.part import KeptRows, Part, Places
 from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts, without_empty
 from frictionlab.results.thinned import Thinned
+from frictionlab.runner.progress import silent
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.table_files import TableFiles
 from frictionlab.study import StudyCurve
@@ -66,10 +67,19 @@ class GatheredTable:
         self.harmonics: pd.DataFrame | None = None
         self._states: list[pd.DataFrame] = []
 
-    def gather(self, solving: Solving, files: TableFiles, laws: registry.Laws, stopped: bool) -> None:
-        """Write the table, held in whole or in part. stopped: curves are not read then."""
+    def gather(
+        self,
+        solving: Solving,
+        files: TableFiles,
+        laws: registry.Laws,
+        stopped: bool,
+        tell: Callable[[int, int], None] = silent,
+    ) -> None:
+        """Write the table, held in whole or in part. stopped: curves are not read then. tell: how far it is."""
         none: pd.DataFrame | None = None
+        size = sum(len(each.rows) for each in solving.curves)
         for piece in pieces(solving):
+            tell(piece.first, size)
             for table in self._tables(piece):
                 files.add_rows(table)
                 self._counts.update(status_counts(table))

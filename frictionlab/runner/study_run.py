@@ -28,7 +28,7 @@ from frictionlab.runner.folder import ASKED, RunFolder
 from frictionlab.runner.gathering import GatheredTable
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.onsets import READ_FOR_ONSETS, lacks_multipliers, onset_table
-from frictionlab.runner.progress import Progress, silent
+from frictionlab.runner.progress import Meter, Progress, silent
 from frictionlab.runner.solving import Keeping, Solving
 from frictionlab.runner.table_files import TableFiles, read_columns_of_file, read_pieces, read_whole
 from frictionlab.runner.workforce import Workforce, workforce
@@ -187,7 +187,7 @@ class StudyRun:
         done, unsaved = None, None
         try:
             with TableFiles(self.folder, self._as_csv, usual and self._is_long) as files:
-                gathered.gather(solving, files, self._laws, stopped)
+                gathered.gather(solving, files, self._laws, stopped, self._next_stage("gathering", "points"))
             if self.folder is not None and not gathered.curves.empty:
                 self.folder.save_text(self.folder.curves_file, gathered.curves)
         except SaveError as problem:
@@ -205,6 +205,14 @@ class StudyRun:
         if stopped:
             raise Interrupted(done)
         return done
+
+    def _next_stage(self, doing: str, things: str) -> Callable[[int, int], None]:
+        """What tells how far it is; only a meter knows of stages beside solving."""
+        tell = self.ways.progress
+        if not isinstance(tell, Meter):
+            return silent
+        tell.begins(doing, things)
+        return tell
 
     @property
     def _laws(self) -> registry.Laws:

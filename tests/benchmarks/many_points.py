@@ -1,8 +1,9 @@
-"""What a run costs by how many points it has: python tests/benchmarks/many_points.py [LARGEST].
+"""What a run costs by how many points it has: python tests/benchmarks/many_points.py [LARGEST | curves SIDE].
 
-Coulomb friction on a line, every column, curves of up to 50,000 belt speeds, from 1e2 points to LARGEST (1e6): each
-run is a command of its own into an empty folder, with kernels compiled before. Wall and processor time, the most
-memory it held, and the sizes of what it wrote; then the same study into another folder, which finds every chunk.
+Coulomb friction on a line, every column, curves of up to 50,000 belt speeds, from 1e2 points to LARGEST (1e6); or
+SIDE drive frequencies by as many normal loads, the shapes of their curves of 40 points drawn as a map. Each run is a
+command of its own into an empty folder, with kernels compiled before. Wall and processor time, the most memory it
+held, and the sizes of what it wrote; then the same study into another folder, which finds every chunk.
 """
 
 from __future__ import annotations
@@ -36,6 +37,15 @@ def study(points: int) -> str:
     return f"schema: 1\nscene: {scene}\nlaws: [{{kind: coulomb, mu: 0.4}}]\nsweep: {{{loads}{speeds}}}\n"
 
 
+def short_curves(side: int) -> str:
+    """A study of so many by so many curves."""
+    over = {"drive.frequency": (0.4, 2.0, side), "normal_load": (1, 24, side), "belt_speed": (0.2, 60, 40)}
+    told = [f"scene.{n}: {{start: {a}, stop: {b}, num: {k}}}" for n, (a, b, k) in over.items()]
+    sweep = ", ".join(told).replace("num: 40}", "num: 40, spacing: log}")
+    scene = "{damping_ratio: 0.1, normal_load: 10, belt_speed: 5, drive: {amplitude: 10, frequency: 1}}"
+    return f"schema: 1\nscene: {scene}\nlaws: [{{kind: coulomb, mu: 0.4}}]\nsweep: {{{sweep}}}\ncolumns: [shape]\n"
+
+
 def run(file: Path, out: Path) -> Cost:
     """One command, whose children are waited for."""
     before = time.perf_counter()
@@ -55,26 +65,25 @@ def size(folder: Path) -> float:
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
 
 
-def measured(points: int) -> tuple[Cost, Cost, float, float]:
-    """A run, another that finds its chunks, and the sizes of the table and of the kept chunks [MB]."""
+def measured(text: str) -> tuple[Cost, Cost, float, float]:
+    """A run of a study, another that finds its chunks, and the sizes of the table and of the kept chunks [MB]."""
     with tempfile.TemporaryDirectory() as folder:
         file, out = Path(folder) / "study.yaml", Path(folder) / "runs" / "study"
-        file.write_text(study(points))
+        file.write_text(text)
         first, again = run(file, out), run(file, out.with_name("other"))
         return first, again, (out / "results.parquet").stat().st_size / 1e6, size(out.parent / ".cache")
 
 
-def main(largest: int) -> None:
-    """Measure and print a row for each number of points."""
-    counts = [10**power for power in range(2, 9) if 10**power <= largest]
-    run_once, _, _, _ = measured(100)  # kernels are compiled here
+def main(studies: dict[int, str]) -> None:
+    """Measure and print a row for each study, by its number of points."""
+    run_once, _, _, _ = measured(study(100))  # kernels are compiled here
     assert run_once.wall > 0.0
     print(
         "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | chunks, MB | found again, s |"
     )
     print("|---|---|---|---|---|---|---|---|")
-    for points in counts:
-        cost, again, table, chunks = measured(points)
+    for points, text in studies.items():
+        cost, again, table, chunks = measured(text)
         print(
             f"| {points:,} | {cost.wall:.1f} | {cost.processor:.1f} | {1e6 * cost.processor / points:.1f} | "
             f"{cost.memory:.0f} | {table:.1f} | {chunks:.1f} | {again.wall:.1f} |",
@@ -83,4 +92,8 @@ def main(largest: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 10**6)
+    if sys.argv[1:2] == ["curves"]:
+        main({40 * int(sys.argv[2]) ** 2: short_curves(int(sys.argv[2]))})
+    else:
+        largest = float(sys.argv[1]) if len(sys.argv) > 1 else 1e6
+        main({10**power: study(10**power) for power in range(2, 9) if 10**power <= largest})

@@ -24,6 +24,7 @@ STUDIES = GALLERY.parent.parent / "studies"
 FOUND = {
     "paper": "The paper, claim by claim",
     "atlas": "Where friction curves are concave",
+    "rivals": "Who else makes a concave curve",
     "dynamic_laws": "What dynamic laws change",
 }
 """Pages beside this folder, of what many studies found together."""

@@ -119,10 +119,7 @@ def polished(reference: str, scene: fl.Scene, free: dict[str, Any], values: dict
         return float(np.nan_to_num(np.abs(means(there(logarithms), COULOMB, SPEEDS) - target), nan=1.0).max())
 
     ends = []
-    for wider in (
-        1.0,
-        1.03,
-    ):  # load and normal load: a curve that reaches mu below a belt speed has no slope there
+    for wider in (1.0, 1.03):  # a curve that reaches mu below a belt speed has no slope there
         start = np.clip(np.log([*values.values()]) + np.log(wider) * LOADS[: len(values)], *np.log(ranges).T)
         options = {"maxfev": EVALUATIONS, "initial_simplex": _simplex(start, np.log(ranges))}
         ends.append(minimize(largest, start, method="Nelder-Mead", bounds=np.log(ranges), options=options))
@@ -239,7 +236,7 @@ def draw() -> None:
                     shown = means(*model, np.arange(1, 61), column)
                     axes.plot(np.arange(1, 61), shown / shown[-1], **look)
             axes.set(xlabel="belt speed", ylim=(0, 1.05), xlim=(0, 60))
-            axes.set_ylabel("mean friction over μ" if place == 2 else "vibration over that on a fast belt")
+            axes.set_ylabel("mean friction over μ" if place == 2 else "vibration (fast belt: 1)")
     write_figure(sheet.figure, FIGURES / "rivals", ("svg",))
 
 

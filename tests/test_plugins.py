@@ -39,7 +39,7 @@ def test_a_folder_holds_a_law_a_study_that_runs_it_and_is_told_of(folder: Path) 
     assert plan.expect
     assert all(expectation.because for expectation in plan.expect)
     assert all(f"kind: {name}" in (folder / "README.md").read_text() for name in _laws(folder))
-    assert f"[{folder.name}]({folder.name}/" in (PROJECT / "plugins" / "README.md").read_text()
+    assert f"[{folder.name}](../plugins/{folder.name}/" in (PROJECT / "docs" / "write_a_law.md").read_text()
 
 
 @deep("making an environment")

@@ -22,7 +22,7 @@ XTOL = 1e-7
 """Of a root, in steps of the grid."""
 STRAIGHT = 5e-3
 """How far a line may leave its chords, as a share of the larger side of the grid."""
-MOST_HALVINGS = 5
+MOST_CHORDS_HALVED = 5
 MOST_ADDED = 4
 """Edges added along each number, at most."""
 _APART = 1e-3  # of the places at which slopes are taken [steps of the grid]
@@ -80,7 +80,7 @@ def _found_once(function: OfTwoNumbers, level: float) -> OfTwoNumbers:
 # --- the grid -------------------------------------------------------------------------------------------------------
 
 Corner = tuple[int, int]
-Edge = tuple[Corner, Corner]
+GridEdge = tuple[Corner, Corner]
 
 
 class _Grid(NamedTuple):
@@ -98,9 +98,9 @@ class _Grid(NamedTuple):
         x, y = np.array(corners).reshape(-1, 2).T
         return np.stack([self.x[x], self.y[y]], axis=1)
 
-    def edges_crossed(self) -> list[Edge]:
+    def edges_crossed(self) -> list[GridEdge]:
         """Those between corners of different signs, as corners (first, second)."""
-        found: list[Edge] = []
+        found: list[GridEdge] = []
         known, above = self.known, self.known >= 0.0
         for first, second in ((1, 0), (0, 1)):
             one, other = (
@@ -162,7 +162,7 @@ def _with_hidden(grid: _Grid, function: OfTwoNumbers) -> _Grid:
 # --- from root to root ----------------------------------------------------------------------------------------------
 
 
-def _chords(function: OfTwoNumbers, grid: _Grid, edges: dict[Edge, int]) -> list[tuple[int, int]]:
+def _chords(function: OfTwoNumbers, grid: _Grid, edges: dict[GridEdge, int]) -> list[tuple[int, int]]:
     """Which roots a line joins: two on the edges of a cell; of four, by the sign in the middle of the cell."""
     chords, saddles = [], []
     for y in range(len(grid.y) - 1):
@@ -210,7 +210,7 @@ def _followed(
 ) -> list[list[Floats]]:
     """The chains with places between theirs until every chord is as good as straight."""
     bent = [[True] * (len(chain) - 1) for chain in chains]
-    for _ in range(MOST_HALVINGS):
+    for _ in range(MOST_CHORDS_HALVED):
         asked = [(i, k) for i, flags in enumerate(bent) for k, flag in enumerate(flags) if flag]
         if not asked:
             break

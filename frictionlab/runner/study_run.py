@@ -187,7 +187,8 @@ class StudyRun:
         done, unsaved = None, None
         try:
             with TableFiles(self.folder, self._as_csv, usual and self._is_long) as files:
-                gathered.gather(solving, files, self._laws, stopped, self._next_stage("gathering", "points"))
+                tell = silent if stopped else self._next_stage("gathering", "points")
+                gathered.gather(solving, files, self._laws, stopped, tell)
             if self.folder is not None and not gathered.curves.empty:
                 self.folder.save_text(self.folder.curves_file, gathered.curves)
         except SaveError as problem:

@@ -6,7 +6,7 @@ squares, weighted as the harmonics of a motion under forces that jump fall off. 
 they stand for they only take energy. What they miss is told by the answers for two sums that miss four
 times as much, in two ways.
 
-Source: of sums of relaxing springs for fractional derivatives Diethelm (2008).
+Source: of sums of relaxing springs for fractional derivatives Diethelm, Numerical Algorithms 47 (2008), 361-390.
 """
 
 from __future__ import annotations

@@ -85,7 +85,7 @@ bodies = st.tuples(sizes(1e-3, 1e4), sizes(1e-1, 1e9), sizes(1e-9, 1.0))
 def test_the_conversion_is_that_of_equation_2_to_rounding(scene: Scene, body: Any) -> None:
     found, wanted = si_scene(**in_si(scene, *body)).mass(), scene.mass()
 
-    np.testing.assert_allclose(np.array(found[:-2]), np.array(wanted[:-2]), rtol=1e-13)
+    np.testing.assert_allclose(np.array(found[:8]), np.array(wanted[:8]), rtol=1e-13)
 
 
 def test_the_numbers_of_one_body_are_those_worked_out_by_hand() -> None:

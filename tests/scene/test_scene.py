@@ -318,4 +318,4 @@ def test_parts_may_be_records_as_well_as_mappings():
 def test_the_page_on_scenes_has_the_formula_of_every_waveform(name: str) -> None:
     page = (Path(__file__).parents[2] / "docs" / "which.md").read_text(encoding="utf-8")
 
-    assert f"| `{name}` | {WAVE_SHAPES[name].formula}" in page
+    assert f"| `{name}` | {WAVE_SHAPES[name].formula}".replace("-", "\u2212") in page

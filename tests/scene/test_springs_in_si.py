@@ -48,7 +48,7 @@ def test_a_natural_frequency_and_a_damping_ratio_are_a_spring_and_a_dashpot(
     )
 
     one, other = (fl.Scene(dimensional=each).mass() for each in (told, springs))
-    np.testing.assert_allclose(np.array(one[:-2]), np.array(other[:-2]), rtol=1e-13)
+    np.testing.assert_allclose(np.array(one[:8]), np.array(other[:8]), rtol=1e-13)
 
 
 @given(sizes(1.0, 1e5), sizes(1e-8, 1e-2))

@@ -14,7 +14,6 @@ from frictionlab.methods.relay_locus.locus import (
     LocusSetting,
     jump,
     length_of,
-    load_jump,
     mean_of_friction,
     mode_before,
 )
@@ -286,13 +285,12 @@ def friction_term(rule: RestRule, motion: Instants, j: int, m: int) -> float:
 @inner
 def misfit_of_rests(setting: LocusSetting, rule: RestRule, motion: Instants) -> float:
     """The largest of the last two coefficients of the polynomials of friction in rests, and of its jumps at
-    joints where the load has none."""
+    joints."""
     n, worst = rule.nodes.size, 0.0
     for j in range(motion.times.size):
         if motion.modes[j] == 0.0:
             if mode_before(motion, j) == 0.0:
-                beyond = jump(motion, setting.limit, j) - load_jump(setting, motion.times[j])
-                worst = max(worst, abs(beyond))
+                worst = max(worst, abs(jump(motion, setting.limit, j)))
             for m in range(n - 2, n):
                 worst = max(worst, abs(friction_term(rule, motion, j, m)))
     return worst

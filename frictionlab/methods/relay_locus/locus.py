@@ -115,7 +115,7 @@ def steps_of_friction(setting: LocusSetting, rule: RestRule, motion: Instants) -
 def slip_of_steps(setting: LocusSetting, steps: Any, t: float) -> float:
     """Slip velocity at a time t in no rest."""
     of = setting.response
-    w, _ = free_slip(of, setting.forcing, t, False)
+    w, _ = free_slip(of, setting.forcing, t)
     w = w - setting.belt_speed
     for j in range(steps.shape[0]):
         w = w - steps[j, 1] * table_at(of, VALUE, wrapped(of, t - steps[j, 0]))
@@ -136,16 +136,6 @@ def mean_of_friction(setting: LocusSetting, rule: RestRule, motion: Instants) ->
 
 
 @inner
-def load_jump(setting: LocusSetting, t: float) -> float:
-    """By how much the load jumps at this time."""
-    of, corners, total = setting.response, setting.forcing.corners, 0.0
-    for c in range(corners.shape[0]):
-        if side_lag(of, t - corners[c, 0], False) == 0.0:
-            total = total + corners[c, 1]
-    return total
-
-
-@inner
 def rest_rows(
     setting: LocusSetting, rule: RestRule, motion: Instants, rests: Any, matrix: Any, right: Any
 ) -> None:
@@ -161,7 +151,7 @@ def rest_rows(
                 if q != p:
                     begun = motion.times[rests[q]], length_of(motion, of.period, rests[q])
                     row_of_rest(of, rule, begun, RATE, (t, last), matrix[row, q * n : (q + 1) * n])
-            _, rate = free_slip(of, setting.forcing, t, last)
+            _, rate = free_slip(of, setting.forcing, t)
             right[row, 0] = rate
             for j in range(motion.times.size):
                 u = side_lag(of, t - motion.times[j], last)
@@ -240,8 +230,7 @@ def newton_system(setting: LocusSetting, rule: RestRule, motion: Instants, matri
     weights, slopes = np.empty(size), np.empty(size)
     for i in range(count):
         before = i - 1 if i > 0 else count - 1
-        pinned = motion.modes[i] == 0.0 or load_jump(setting, motion.times[i]) != 0.0
-        if motion.modes[before] == 0.0 and pinned:
+        if motion.modes[before] == 0.0 and motion.modes[i] == 0.0:
             # It stays where it is.
             residual[i] = 0.0
             for j in range(count):
@@ -278,7 +267,7 @@ def newton_row(
     the slip velocity there and in its rate just before."""
     of, count, t = setting.response, motion.times.size, motion.times[i]
     answer, weights, slopes = of_rests
-    w, rate = free_slip(of, setting.forcing, t, True)
+    w, rate = free_slip(of, setting.forcing, t)
     w = w - setting.belt_speed
     for j in range(count):
         row, z = place(of, side_lag(of, t - motion.times[j], True))

@@ -124,7 +124,8 @@ class LocusCurve:
         self.response = response_of(self.body, 2.0 * math.pi / self.period)
         self.free = friction_free_slip(self.body, self.load, self.belt, self.period)
         self.extremes = self.free.extremes(self.period)
-        self.forcing = FreeWaves(waves_of(self.free.waves), self.free.corners, self.free.steady)
+        bends = np.ascontiguousarray(self.free.corners[:, [0, 2]])
+        self.forcing = FreeWaves(waves_of(self.free.waves), bends, self.free.steady)
         self.longest = (LONGEST_REST if body.smooth else LONGEST_GRADED) / body.fastest
         terms = terms_of_response(min(self.longest, self.period) * body.fastest)
         self.rules = tuple(rest_rule(each, terms, 1 if body.smooth else GRADING) for each in REST_DEGREES)
@@ -201,8 +202,7 @@ class LocusCurve:
         speeds = self.belt_speeds[places]
         order = places[np.lexsort((-np.abs(speeds), speeds < 0.0))]
         low, high = self.extremes
-        corners = np.abs(self.free.corners)
-        loads = float(corners[:, 1].sum() + self.period * corners[:, 2].sum())
+        loads = self.period * float(np.abs(self.free.corners[:, 2]).sum())
         given = curve.CurveScales(max(high, -low), self.longest, self.response.error, loads, high, low)
         speeds = np.ascontiguousarray(self.belt_speeds)
         _, self.seconds = KernelCall(curve.follow_curve).timed(

@@ -196,7 +196,7 @@ def position_at(setting: LocusSetting, steps: Any, around: BesideFriction, t: fl
     x = x - of.static * mean
     for c in range(corners.shape[0]):
         u = wrapped(of, t - corners[c, 0])
-        x = x + (corners[c, 1] * table_at(of, INTEGRAL, u) + corners[c, 2] * table_at(of, TWICE, u))
+        x = x + corners[c, 1] * table_at(of, TWICE, u)
     for j in range(steps.shape[0]):
         x = x - steps[j, 1] * table_at(of, INTEGRAL, wrapped(of, t - steps[j, 0]))
     return x

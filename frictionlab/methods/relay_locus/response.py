@@ -37,8 +37,8 @@ class StepAnswer(NamedTuple):
 class FreeWaves(NamedTuple):
     """The slip velocity without friction on a belt whose mean velocity is zero, and what has corners in it.
 
-    waves [n, 3]: frequency, sine and cosine parts. corners [n, 3]: times in [0, period), by how much the load jumps
-    there and by how much its slope does; steady: added, so that the mean velocity is zero.
+    waves [n, 3]: frequency, sine and cosine parts. corners [n, 2]: times in [0, period) and by how much the slope of
+    the load jumps there; steady: added, so that the mean velocity is zero.
     """
 
     waves: Any
@@ -128,17 +128,15 @@ def waves_at(waves: Any, t: float) -> tuple[float, float]:
 
 
 @inner
-def free_slip(of: StepAnswer, forcing: FreeWaves, t: float, before: bool) -> tuple[float, float]:
-    """The slip velocity without friction on a belt whose mean velocity is zero, and its rate; where the load jumps,
-    that after or before."""
+def free_slip(of: StepAnswer, forcing: FreeWaves, t: float) -> tuple[float, float]:
+    """The slip velocity without friction on a belt whose mean velocity is zero, and its rate."""
     slip, rate = waves_at(forcing.waves, t)
     slip = slip + forcing.steady
     for c in range(forcing.corners.shape[0]):
-        u = side_lag(of, t - forcing.corners[c, 0], before)
-        row, z = place(of, u)
-        value, jump, bend = in_powers(of.tables, VALUE, row, z), forcing.corners[c, 1], forcing.corners[c, 2]
-        slip = slip + (jump * value + bend * in_powers(of.tables, INTEGRAL, row, z))
-        rate = rate + (jump * in_powers(of.tables, RATE, row, z) + bend * (value - of.static / of.period))
+        row, z = place(of, side_lag(of, t - forcing.corners[c, 0], False))
+        bend = forcing.corners[c, 1]
+        slip = slip + bend * in_powers(of.tables, INTEGRAL, row, z)
+        rate = rate + bend * (in_powers(of.tables, VALUE, row, z) - of.static / of.period)
     return slip, rate
 
 

@@ -268,9 +268,9 @@ def frictionless(setting: LocusSetting, steps: int, rests: bool) -> Instants:
     """The reversals of slip without friction; or rests where it overtakes the belt."""
     times, modes, count = np.empty(MOST_INSTANTS), np.empty(MOST_INSTANTS), 0
     of, v, h = setting.response, setting.belt_speed, setting.response.period / steps
-    left, left_rate = free_slip(of, setting.forcing, 0.0, False)
+    left, left_rate = free_slip(of, setting.forcing, 0.0)
     for k in range(1, steps + 1):
-        right, right_rate = free_slip(of, setting.forcing, k * h, False)
+        right, right_rate = free_slip(of, setting.forcing, k * h)
         start, stop, side = h * (k - 1), h * (k - 1), 0.0
         if (left < v) != (right < v):
             start = start + h * (v - left) / (right - left)
@@ -280,12 +280,12 @@ def frictionless(setting: LocusSetting, steps: int, rests: bool) -> Instants:
             near, far = start, start + h
             for _ in range(EXTREME_HALVINGS):
                 middle = 0.5 * (near + far)
-                _, rate = free_slip(of, setting.forcing, middle, False)
+                _, rate = free_slip(of, setting.forcing, middle)
                 if rate * left_rate > 0.0:
                     near = middle
                 else:
                     far = middle
-            top, _ = free_slip(of, setting.forcing, near, False)
+            top, _ = free_slip(of, setting.forcing, near)
             if (top < v) != (left < v):
                 half = math.sqrt(2.0 * h * abs((top - v) / (right_rate - left_rate)))
                 start, stop, side = near - half, near + half, math.copysign(1.0, top - v)

@@ -12,9 +12,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
-from scipy.ndimage import distance_transform_edt, maximum_filter
-from scipy.optimize import elementwise
 
 from frictionlab.quantities import Floats
 
@@ -135,6 +132,9 @@ class _Grid(NamedTuple):
 
 def _with_hidden(grid: _Grid, function: OfTwoNumbers) -> _Grid:
     """The grid, settled, with lines through places of a sign that none of the corners around them has."""
+    from scipy.interpolate import RectBivariateSpline
+    from scipy.ndimage import distance_transform_edt, maximum_filter
+
     grid = grid.settled(function)
     there = np.isfinite(grid.known)
     if min(grid.known.shape) < 4 or not there.any():
@@ -230,6 +230,7 @@ def _followed(
 
 def _roots(function: OfTwoNumbers, low: Floats, high: Floats) -> Floats:
     """The root between two places each; NaN where there is no change of sign."""
+    from scipy.optimize.elementwise import find_root
 
     def along(share: Floats, at: Floats) -> Floats:
         index = at.astype(int)
@@ -238,7 +239,7 @@ def _roots(function: OfTwoNumbers, low: Floats, high: Floats) -> Floats:
     length = float(np.hypot(*(high - low).T).max())
     count = np.arange(len(low), dtype=np.float64)
     ends = np.zeros(len(low)), np.ones(len(low))
-    found = elementwise.find_root(
+    found = find_root(
         along,
         ends,
         args=(count,),

@@ -104,7 +104,7 @@ def _read(body: BodyNumbers, state: Any) -> Any:
     return force
 
 
-read_forces = by_relaxing(lambda body, state: (), _read)
+read_forces = by_relaxing(lambda body, state: 0.0, _read)
 """read_forces(body, state): as one number, from a state; the body has its springs as tuples."""
 
 
@@ -143,7 +143,7 @@ carrying = by_relaxing(lambda body, force, tau: body, _carrying)
 """carrying(body, force, tau): the body which knows, from those of its deviation, its relaxing forces at this time."""
 
 deviating_force = by_relaxing(
-    lambda body, tau: (), lambda body, tau: body.relaxing.force - reference_force(body, tau)
+    lambda body, tau: 0.0, lambda body, tau: body.relaxing.force - reference_force(body, tau)
 )
 """deviating_force(body, tau): those of its deviation, from the ones the body knows at this time."""
 

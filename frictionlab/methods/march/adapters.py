@@ -287,7 +287,7 @@ def _slopes_at(body: BodyNumbers, x: Any, v: Any) -> Any:
 
 
 _acceleration_under = as_argument(acceleration_under)
-_smooth_step = dop853.stepper(_smooth_rates)
+_smooth_step = dop853.stepper(dop853.carrying_nothing(_smooth_rates))
 
 
 def _by_moreau(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
@@ -306,7 +306,7 @@ def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     body, belt_speed = problem.body, problem.belt_speed
     # The slopes at the start are found anew: the last step may have been repeated, or ended at a zero of velocity.
     a, mu = _smooth_rates(problem, start.tau, start.x, start.v)
-    end = _smooth_step(problem, start.tau, dop853.State(start.x, start.v, a, mu), h)
+    end = _smooth_step(problem, start.tau, dop853.State(start.x, start.v, a, mu, 0.0, 0.0), h)
     growth = growth_of(body, end, problem.stepper.accuracy)
     before = slip(body, belt_speed, instant_at(body, start.tau), start.v)
     # Slip may have come and gone within the step: the error estimate can be blind to that.

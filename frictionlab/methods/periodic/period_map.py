@@ -13,7 +13,14 @@ from typing import Any
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.relaxing import elements_of, energy_unit, read_forces, write_forces
+from frictionlab.dynamics.relaxing import (
+    elements_of,
+    energy_unit,
+    in_one_number,
+    read_forces,
+    reference_force,
+    write_forces,
+)
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
 from frictionlab.methods.periodic.maps.memory_state import (
@@ -100,13 +107,8 @@ unpack_forces = by_relaxing(lambda body, state, rows, first: None, _unpack_force
 
 
 def _relaxed(body: BodyNumbers, state: Any) -> None:
-    m, omega = elements_of(body), body.frequency
-    for k in range(m):
-        # what holds the friction-free motion back at tau = 0 is taken away
-        stiffness, rate = body.relaxing.stiffness[k], body.relaxing.rate[k]
-        sine, cosine = body.reference_sine.real, body.reference_cosine.real
-        force = stiffness * omega * (omega * cosine + rate * sine) / (omega * omega + rate * rate)
-        state[state.size - m + k] = -energy_unit(body, k) * force
+    # what holds the friction-free motion back at tau = 0 is taken away
+    write_forces(body, state, -reference_force(in_one_number(body), 0.0))
 
 
 relax = by_relaxing(lambda body, state: None, _relaxed)
@@ -187,7 +189,7 @@ def image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mappe
     image = path_map(case, y, u, z, how)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
-    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps, ())
+    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps, 0.0)
 
 
 paced_image = by_law(_image_without_memory, _image_with_memory, _image_with_memory)

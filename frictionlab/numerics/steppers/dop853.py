@@ -297,12 +297,17 @@ def _dense7(k: Any, extra: Any) -> Any:
 
 
 class State(NamedTuple):
-    """Position, velocity, acceleration and friction coefficient at one time."""
+    """Position, velocity, acceleration and friction coefficient at one time.
+
+    e: other numbers that are carried along, r their rates; zero where there are none.
+    """
 
     x: Any
     v: Any
     a: Any
     f: Any
+    e: Any
+    r: Any
 
 
 class Step(NamedTuple):
@@ -315,42 +320,11 @@ class Step(NamedTuple):
     v_error5: Any
     v_error3: Any
     friction_impulse: Any
+    e: Any
 
 
 class Stages(NamedTuple):
-    """Velocities, accelerations and friction coefficients of the stages 1 and 6 to 12, which the step sums up."""
-
-    v: Any
-    a: Any
-    f: Any
-
-
-class CarryingState(NamedTuple):
-    """The same with other numbers that are carried along, and their rates."""
-
-    x: Any
-    v: Any
-    a: Any
-    f: Any
-    e: Any
-    r: Any
-
-
-class CarryingStep(NamedTuple):
-    """The same with those after the step."""
-
-    x: Any
-    v: Any
-    x_error5: Any
-    x_error3: Any
-    v_error5: Any
-    v_error3: Any
-    friction_impulse: Any
-    e: Any
-
-
-class CarryingStages(NamedTuple):
-    """The same with their rates."""
+    """Velocities, accelerations, friction coefficients and other rates of the stages 1 and 6 to 12, as summed up."""
 
     v: Any
     a: Any
@@ -366,73 +340,22 @@ class Dense(NamedTuple):
     v: Any
 
 
+def carrying_nothing(rates: Any) -> Any:
+    """For ``stepper``, of a kernel function ``rates(problem, tau, x, v)`` = (x'', friction)."""
+
+    @fast_embedded
+    def carrying(problem: Any, tau: float, x: Any, v: Any, _e: Any) -> Any:
+        a, f = rates(problem, tau, x, v)
+        return a, f, 0.0
+
+    return carrying
+
+
 def _stages_of(rates: Any) -> Any:
     """``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``."""
 
     @fast_embedded
     def stages(problem: Any, tau: float, state: State, h: float) -> Stages:
-        x, v0, a0, f0 = state
-        v1 = v0 + h * _sum1(a0)
-        a1, _f1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1)
-        v2 = v0 + h * _sum2(a0, a1)
-        a2, _f2 = rates(problem, tau + 0.0789002279381516 * h, x + h * _sum2(v0, v1), v2)
-        v3 = v0 + h * _sum3(a0, a2)
-        a3, _f3 = rates(problem, tau + 0.1183503419072274 * h, x + h * _sum3(v0, v2), v3)
-        v4 = v0 + h * _sum4(a0, a2, a3)
-        a4, _f4 = rates(problem, tau + 0.2816496580927726 * h, x + h * _sum4(v0, v2, v3), v4)
-        v5 = v0 + h * _sum5(a0, a3, a4)
-        a5, f5 = rates(problem, tau + 0.3333333333333333 * h, x + h * _sum5(v0, v3, v4), v5)
-        v6 = v0 + h * _sum6(a0, a3, a4, a5)
-        a6, f6 = rates(problem, tau + 0.25 * h, x + h * _sum6(v0, v3, v4, v5), v6)
-        v7 = v0 + h * _sum7(a0, a3, a4, a5, a6)
-        a7, f7 = rates(problem, tau + 0.3076923076923077 * h, x + h * _sum7(v0, v3, v4, v5, v6), v7)
-        v8 = v0 + h * _sum8(a0, a3, a4, a5, a6, a7)
-        a8, f8 = rates(problem, tau + 0.6512820512820513 * h, x + h * _sum8(v0, v3, v4, v5, v6, v7), v8)
-        v9 = v0 + h * _sum9(a0, a3, a4, a5, a6, a7, a8)
-        a9, f9 = rates(problem, tau + 0.6 * h, x + h * _sum9(v0, v3, v4, v5, v6, v7, v8), v9)
-        v10 = v0 + h * _sum10(a0, a3, a4, a5, a6, a7, a8, a9)
-        a10, f10 = rates(
-            problem, tau + 0.8571428571428571 * h, x + h * _sum10(v0, v3, v4, v5, v6, v7, v8, v9), v10
-        )
-        v11 = v0 + h * _sum11(a0, a3, a4, a5, a6, a7, a8, a9, a10)
-        a11, f11 = rates(problem, tau + h, x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10), v11)
-        return Stages(
-            (v0, v5, v6, v7, v8, v9, v10, v11),
-            (a0, a5, a6, a7, a8, a9, a10, a11),
-            (f0, f5, f6, f7, f8, f9, f10, f11),
-        )
-
-    return stages
-
-
-def stepper(rates: Any) -> Any:
-    """``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v)`` = (x'', friction).
-
-    The rates are bound here: numba caches no kernel that is handed a function.
-    """
-    stages = _stages_of(rates)
-
-    @fast
-    def step(problem: Any, tau: float, state: State, h: float) -> Step:
-        v, a, f = stages(problem, tau, state, h)
-        return Step(
-            state.x + h * _sum12(*v),
-            state.v + h * _sum12(*a),
-            h * _error5(*v),
-            h * _error3(*v),
-            h * _error5(*a),
-            h * _error3(*a),
-            h * _sum12(*f),
-        )
-
-    return step
-
-
-def _carrying_stages_of(rates: Any) -> Any:
-    """The same for the rates of ``carrying_stepper``."""
-
-    @fast_embedded
-    def stages(problem: Any, tau: float, state: CarryingState, h: float) -> CarryingStages:
         x, v0, a0, f0, e0, r0 = state
         v1 = v0 + h * _sum1(a0)
         a1, _f1, r1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1, e0 + h * _sum1(r0))
@@ -496,7 +419,7 @@ def _carrying_stages_of(rates: Any) -> Any:
             v11,
             e0 + h * _sum11(r0, r3, r4, r5, r6, r7, r8, r9, r10),
         )
-        return CarryingStages(
+        return Stages(
             (v0, v5, v6, v7, v8, v9, v10, v11),
             (a0, a5, a6, a7, a8, a9, a10, a11),
             (f0, f5, f6, f7, f8, f9, f10, f11),
@@ -506,14 +429,17 @@ def _carrying_stages_of(rates: Any) -> Any:
     return stages
 
 
-def carrying_stepper(rates: Any) -> Any:
-    """The same where numbers e are carried along: for ``rates(problem, tau, x, v, e)`` = (x'', friction, e')."""
-    stages = _carrying_stages_of(rates)
+def stepper(rates: Any) -> Any:
+    """``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v, e)`` = (x'', friction, e').
+
+    The rates are bound here: numba caches no kernel that is handed a function.
+    """
+    stages = _stages_of(rates)
 
     @fast
-    def step(problem: Any, tau: float, state: CarryingState, h: float) -> CarryingStep:
+    def step(problem: Any, tau: float, state: State, h: float) -> Step:
         v, a, f, r = stages(problem, tau, state, h)
-        return CarryingStep(
+        return Step(
             state.x + h * _sum12(*v),
             state.v + h * _sum12(*a),
             h * _error5(*v),
@@ -549,36 +475,6 @@ def interpolant(rates: Any) -> Any:
 
     @fast
     def dense(problem: Any, tau: float, state: State, h: float) -> Dense:
-        v, a, _f = stages(problem, tau, state, h)
-        x, v0, a0, _f0 = state
-        _v0, v5, v6, v7, v8, v9, v10, v11 = v
-        _a0, a5, a6, a7, a8, a9, a10, a11 = a
-        ended, v12 = x + h * _sum12(*v), v0 + h * _sum12(*a)
-        a12, _f12 = rates(problem, tau + h, ended, v12)
-        v13 = v0 + h * _sum14(a0, a6, a7, a8, a9, a10, a11, a12)
-        x13 = x + h * _sum14(v0, v6, v7, v8, v9, v10, v11, v12)
-        a13, _f13 = rates(problem, tau + 0.1 * h, x13, v13)
-        v14 = v0 + h * _sum15(a0, a5, a6, a7, a10, a11, a12, a13)
-        x14 = x + h * _sum15(v0, v5, v6, v7, v10, v11, v12, v13)
-        a14, _f14 = rates(problem, tau + 0.2 * h, x14, v14)
-        v15 = v0 + h * _sum16(a0, a5, a6, a7, a8, a12, a13, a14)
-        x15 = x + h * _sum16(v0, v5, v6, v7, v8, v12, v13, v14)
-        a15, _f15 = rates(problem, tau + 0.7777777777777778 * h, x15, v15)
-        return Dense(
-            h,
-            _coefficients(h, x, ended, v, (v12, v13, v14, v15)),
-            _coefficients(h, v0, v12, a, (a12, a13, a14, a15)),
-        )
-
-    return dense
-
-
-def carrying_interpolant(rates: Any) -> Any:
-    """``interpolant`` for the rates of ``carrying_stepper``."""
-    stages = _carrying_stages_of(rates)
-
-    @fast
-    def dense(problem: Any, tau: float, state: CarryingState, h: float) -> Dense:
         v, a, _f, r = stages(problem, tau, state, h)
         x, v0, a0, _f0, e0, r0 = state
         _v0, v5, v6, v7, v8, v9, v10, v11 = v

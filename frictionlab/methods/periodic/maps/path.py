@@ -32,7 +32,14 @@ from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_
 from frictionlab.methods.periodic.case import Case, case_in_piece
 from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keep_step
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
-from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
+from frictionlab.numerics.steppers.dop853 import (
+    Dense,
+    State,
+    carrying_nothing,
+    interpolant,
+    motion_within,
+    stepper,
+)
 from frictionlab.orbit.recorder import panel_writer
 from frictionlab.scene.body import BodyNumbers
 
@@ -104,7 +111,8 @@ def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
 
 
-step, dense = stepper(path_rates), interpolant(path_rates)
+_rates = carrying_nothing(path_rates)
+step, dense = stepper(_rates), interpolant(_rates)
 
 
 @fast
@@ -215,7 +223,9 @@ class PathNode(NamedTuple):
 def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
     """The start of a leg."""
     a, rub = path_rates(leg, tau, y, u)
-    return PathNode(leg, tau, State(y, u, a, rub), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True)
+    return PathNode(
+        leg, tau, State(y, u, a, rub, 0.0, 0.0), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True
+    )
 
 
 @inner
@@ -278,7 +288,7 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
         return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)
     leg = _anchored(leg, tau)
     a, rub = path_rates(leg, tau, taken.x, taken.v)
-    return PathNode(leg, tau, State(taken.x, taken.v, a, rub), way, node.corner, False)
+    return PathNode(leg, tau, State(taken.x, taken.v, a, rub, 0.0, 0.0), way, node.corner, False)
 
 
 @inner

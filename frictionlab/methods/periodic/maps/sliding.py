@@ -46,11 +46,9 @@ from frictionlab.dynamics.step_size import growth_of, longest_step
 from frictionlab.methods.periodic.case import Case, case_in_piece
 from frictionlab.methods.periodic.maps.stick import StickPhase, stick_phase
 from frictionlab.numerics.steppers.dop853 import (
-    CarryingState,
     Dense,
     State,
-    carrying_interpolant,
-    carrying_stepper,
+    carrying_nothing,
     interpolant,
     motion_within,
     stepper,
@@ -75,81 +73,63 @@ MOST_STEPS = 200_000
 
 
 @fast_embedded
-def carrying_rates(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> Any:
-    """The same of a body that remembers, and the rates of its relaxing forces."""
+def _remembering_rates(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> Any:
+    """``rates`` of a body that remembers, and the rates of its relaxing forces."""
     a, rub = rates(problem, tau, y, u)
     relaxing = problem.body.relaxing
     return a - along_x1(summed(force), u), rub, relaxing.stiffness * u.real - relaxing.rate * force
 
 
-_step, _dense = stepper(rates), interpolant(rates)
-_carrying_step, _carrying_dense = carrying_stepper(carrying_rates), carrying_interpolant(carrying_rates)
+_plain_rates = carrying_nothing(rates)
+_step, _dense = stepper(_plain_rates), interpolant(_plain_rates)
+_remembering_step, _remembering_dense = stepper(_remembering_rates), interpolant(_remembering_rates)
 step, dense = (
     by_relaxing(
         lambda problem, tau, state, h: _step(problem, tau, state, h),
-        lambda problem, tau, state, h: _carrying_step(problem, tau, state, h),
+        lambda problem, tau, state, h: _remembering_step(problem, tau, state, h),
     ),
     by_relaxing(
         lambda problem, tau, state, h: _dense(problem, tau, state, h),
-        lambda problem, tau, state, h: _carrying_dense(problem, tau, state, h),
+        lambda problem, tau, state, h: _remembering_dense(problem, tau, state, h),
     ),
+)
+_rates_with = by_relaxing(
+    lambda problem, tau, y, u, force: _plain_rates(problem, tau, y, u, force),
+    lambda problem, tau, y, u, force: _remembering_rates(problem, tau, y, u, force),
 )
 
 
 @inner
-def _plain_state(problem: Flow, tau: float, y: Any, u: Any) -> State:
-    a, f = rates(problem, tau, y, u)
-    return State(y, u, a, f)
+def _state_with(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> State:
+    a, f, r = _rates_with(problem, tau, y, u, force)
+    return State(y, u, a, f, force, r)
 
 
-@fast
-def _carrying_state(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> CarryingState:
-    a, f, r = carrying_rates(problem, tau, y, u, force)
-    return CarryingState(y, u, a, f, force, r)
+@inner
+def state_at(problem: Flow, tau: float, y: Any, u: Any) -> State:
+    """The state from which slip goes on, when the body knows its relaxing forces."""
+    return _state_with(problem, tau, y, u, deviating_force(problem.body, tau))
 
 
-state_at = by_relaxing(
-    lambda problem, tau, y, u: _plain_state(problem, tau, y, u),
-    lambda problem, tau, y, u: _carrying_state(problem, tau, y, u, deviating_force(problem.body, tau)),
-)
-"""state_at(problem, tau, y, u): the state from which slip goes on, when the body knows its relaxing forces."""
-
-state_after = by_relaxing(
-    lambda problem, tau, taken: _plain_state(problem, tau, taken.x, taken.v),
-    lambda problem, tau, taken: _carrying_state(problem, tau, taken.x, taken.v, taken.e),
-)
-"""state_after(problem, tau, taken): the state at the end of a step."""
+@inner
+def state_after(problem: Flow, tau: float, taken: Any) -> State:
+    """The state at the end of a step."""
+    return _state_with(problem, tau, taken.x, taken.v, taken.e)
 
 
-def _carrying_on(problem: Flow, start: Any, lasts: float, y: Any, u: Any) -> CarryingState:
-    """Next to rest, in a while so short that forces grow evenly."""
-    relaxing = problem.body.relaxing
-    force = start.e + relaxing.stiffness * (y - start.x).real - (lasts * relaxing.rate) * start.e
-    return CarryingState(y, u, u, u, force, force)
+@inner
+def _still(y: Any, u: Any, force: Any) -> State:
+    """Where it rests: its rates are of no account."""
+    return State(y, u, u, u, force, force)
 
 
-at_rest_after = by_relaxing(
-    lambda problem, start, lasts, y, u: State(y, u, u, u),
-    _carrying_on,
-)
-"""at_rest_after(problem, start, lasts, y, u): where rest begins, a short while after a state."""
-
-still_at = by_relaxing(
-    lambda problem, tau, y, u: State(y, u, u, u),
-    lambda problem, tau, y, u: CarryingState(
-        y, u, u, u, deviating_force(problem.body, tau), deviating_force(problem.body, tau)
+_growing = by_relaxing(
+    lambda problem, start, lasts, way: 0.0,
+    lambda problem, start, lasts, way: (
+        start.e + problem.body.relaxing.stiffness * way - (lasts * problem.body.relaxing.rate) * start.e
     ),
 )
-"""still_at(problem, tau, y, u): where it rests."""
-
-stopped_by = by_relaxing(
-    lambda problem, taken: State(taken.x, taken.v, taken.v, taken.v),
-    lambda problem, taken: CarryingState(taken.x, taken.v, taken.v, taken.v, taken.e, taken.e),
-)
-"""stopped_by(problem, taken): where rest begins, at the end of a step."""
-
-forces_held = by_relaxing(lambda problem, state: (), lambda problem, state: state.e)
-"""forces_held(problem, state): the relaxing forces that it holds."""
+"""_growing(problem, start, lasts, way): relaxing forces after a while so short that they grow evenly."""
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------
@@ -226,7 +206,12 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
             path = 0.5 * wait * w
             friction_impulse = w / body.normal_load + resting_friction(body, belt_speed, node.tau, end, x)
             y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
-            return Landing(REST, wait, at_rest_after(problem, node.state, wait, y, w), friction_impulse)
+            return Landing(
+                REST,
+                wait,
+                _still(y, w, _growing(problem, node.state, wait, (y - node.state.x).real)),
+                friction_impulse,
+            )
     return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
 
 
@@ -250,7 +235,7 @@ def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: 
         after = side * slip_at(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
     if after <= 0.0:
         h, taken = stop(problem, node.tau, state, 0.0, limit)
-        return Landing(REST, h, stopped_by(problem, taken), taken.friction_impulse)
+        return Landing(REST, h, _still(taken.x, taken.v, taken.e), taken.friction_impulse)
     return Landing(ACCEPT, h, there, taken.friction_impulse)
 
 
@@ -339,7 +324,7 @@ def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
     u = u - reference_velocity(body, problem.sine, problem.cosine)
     y = rest.x - reference_position(body, tau)
-    return state_at(problem, tau, y, u) if tau < end else still_at(problem, tau, y, u)
+    return state_at(problem, tau, y, u) if tau < end else _still(y, u, deviating_force(problem.body, tau))
 
 
 class Attempt(NamedTuple):
@@ -405,7 +390,7 @@ def _sliding_piece(
     w = slip_at(anchored(law, body, belt_speed, 1.0, tau), tau, u)
     problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, tau)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
-    state = still_at(problem, tau, y, u) if resting else state_at(problem, tau, y, u)
+    state = _still(y, u, deviating_force(problem.body, tau)) if resting else state_at(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
             # at rest: until the belt has carried the mass to where friction no longer holds it
@@ -435,6 +420,6 @@ def _sliding_piece(
             resting, leaving = done.verdict == REST, done.verdict == STILL
             friction_impulse, state = friction_impulse + done.friction_impulse, done.end
             tau = tau + done.h if end - tau > done.h else end
-            body = carrying(body, forces_held(problem, state), tau)
-    forces = forces_held(problem, state)
+            body = carrying(body, state.e, tau)
+    forces = state.e
     return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, steps, forces)

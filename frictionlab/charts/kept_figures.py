@@ -237,9 +237,8 @@ def _closed(inside: pd.DataFrame, row: pd.Series) -> pd.DataFrame:
     """The samples in time, and the first again after the last, but for a motion that does not repeat."""
     if row.get("error_kind") == "statistical":
         return inside
-    times = inside[
-        [name for name in inside if name.startswith("tau")]
-    ]  # in SI units, too, where the scene is
+    # in SI units, too, where the scene is
+    times = inside[[name for name in inside if name.startswith("tau")]]
     steps = times.iloc[1] - times.iloc[0] if len(inside) > 1 else 0.0 * times.iloc[0]
     again = inside.iloc[:1].assign(**dict(times.iloc[-1] + steps))
     return pd.concat([inside, again], ignore_index=True)

@@ -212,9 +212,8 @@ def _figure(table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str]) -
     if "status" in table:
         pictures = [picture for picture in pictures if not picture.having("refused").all()]
     sizes = [(len(each.rows), each.rows[x].nunique(), each.rows[y].nunique()) for each in pictures]
-    if not pictures or any(
-        rows != m * n or min(m, n) < 2 for rows, m, n in sizes
-    ):  # else a map is full of holes
+    # else a map is full of holes
+    if not pictures or any(rows != m * n or min(m, n) < 2 for rows, m, n in sizes):
         return None
     if "error" in table:
         pictures = drawn_once(pictures, ["mean_friction"])

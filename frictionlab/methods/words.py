@@ -148,7 +148,8 @@ class ModelWord(StrEnum):
     STATIC = "static friction", "exact needs static friction equal to sliding friction (no mu_static)"
     BEYOND_LOCUS = (
         "beyond relay locus",
-        "relay_locus takes Coulomb friction without mu_static on a linear body under sines, along one line",
+        "relay_locus takes Coulomb friction without mu_static on a linear body under sines or a triangle, along one "
+        "line",
     )
     UNDRIVEN = "no drive", "exact needs a drive, whose period is that of the motion"
     LOAD_ACROSS = "load across", "exact works along one line: this scene has a transverse load"

@@ -259,16 +259,13 @@ class StudyRun:
             counts,
         )
 
-    def _solved_apart(self, study: Study) -> Run:
-        """The run of another study, whose chunks are kept with those of this one."""
-        return StudyRun(study, None, self.kept, RunWays()).run()
-
     def _onsets(self, table: pd.DataFrame) -> pd.DataFrame:
         """The onsets of the curves; where the table lacks what they are found from, the points are solved again."""
         study = self.study
         if len(table) and lacks_multipliers(study, table):
             asked = replace(study, columns=(ONSETS_GROUP,), expect=())
-            table = self._solved_apart(asked).table
+            # chunks are kept with those of this run
+            table = StudyRun(asked, None, self.kept, RunWays()).run().table
         return onset_table(study, table)
 
     def _judged(self, done: Run, stopped: bool = False) -> Run:

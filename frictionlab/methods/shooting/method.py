@@ -47,6 +47,11 @@ NO_HARMONICS = (
 )
 
 
+def _is_followed(solve: Solve, scene: Scene) -> bool:
+    """Whether motions are followed by the map that closes orbits, of a body that is known as it is."""
+    return solve is solve_driven and (is_exact(scene) or not scene.remembers)
+
+
 def starts_to_creep(scene: Scene) -> bool:
     """Whether the mass moves, or its spring pulls, on a belt at rest."""
     return scene.belt_speed == 0.0 and (scene.start.x != 0.0 or scene.start.velocity != 0.0)
@@ -104,13 +109,11 @@ class Shooting(Method):
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
         """Of a driven mass, by the period map that closes its orbits."""
         solve = next(solve for applies, solve in CASES if applies(scene, law))
-        known = solve is solve_driven and (is_exact(scene) or not scene.remembers)
-        return follow_motion(scene, law, periods, tolerance) if known else []
+        return follow_motion(scene, law, periods, tolerance) if _is_followed(solve, scene) else []
 
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:
         """Motions of a driven mass followed to their ends, and from the ends at one belt speed on at the next."""
         solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
-        known = solve is solve_driven and (is_exact(scenes[0]) or not scenes[0].remembers)
-        return follow_states(scenes, law, tolerance, starts) if known else []
+        return follow_states(scenes, law, tolerance, starts) if _is_followed(solve, scenes[0]) else []

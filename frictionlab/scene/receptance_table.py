@@ -83,8 +83,9 @@ class TabulatedBody:
     def _between(self, at: Floats) -> ComplexValues:
         nodes, values = np.array(self.frequency), np.array(self.values)
         direct = _cubic(nodes, values, at)
-        inverse = _cubic(nodes, 1.0 / values + self.mass * nodes**2, at)
-        other = 1.0 / (inverse[0] - self.mass * at**2)
+        inertia = self.mass if np.isfinite(self.mass) else 0.0
+        inverse = _cubic(nodes, 1.0 / values + inertia * nodes**2, at)
+        other = 1.0 / (inverse[0] - inertia * at**2)
         return np.where(np.abs(other) ** 2 * inverse[1] < direct[1], other, direct[0])
 
 

@@ -91,6 +91,16 @@ class Signal(NamedTuple):
         )
         return sorted(tau for tau in found if tau < end)
 
+    def between(self, tau: Floats) -> Floats:
+        """The value at rising times from one corner to the next; at both ends that between them."""
+        middle = 0.5 * (tau[0] + tau[-1])
+        value, slope = (float(each[0]) for each in self.lines_at(np.array([middle])))
+        return sum((_wave(each, tau) for each in self.waves), value + slope * (tau - middle))
+
+    def reaches_beyond(self, frequency: float) -> bool:
+        """Whether any of its harmonics is above this frequency."""
+        return bool(self.pieces) or any(each.frequency > frequency for each in self.waves)
+
     def harmonic(self, frequency: float, end: float) -> complex:
         """Phasor of its harmonic of this frequency, over a period ``end`` of everything."""
         total = sum((each.phasor for each in self.waves if math.isclose(each.frequency, frequency)), 0j)
@@ -112,11 +122,7 @@ class Signal(NamedTuple):
             if stop <= start:
                 continue
             n = 3 + 2 * math.ceil(1000.0 * quickest * (stop - start) / FULL_TURN)
-            tau = np.linspace(start, stop, n)
-            value, slope = (float(each[0]) for each in self.lines_at(np.array([0.5 * (start + stop)])))
-            values = sum(
-                (_wave(each, tau) for each in self.waves), value + slope * (tau - 0.5 * (start + stop))
-            )
+            values = self.between(np.linspace(start, stop, n))
             low, high = min(low, -highest(-values)), max(high, highest(values))
         return low, high
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from frictionlab.quantities import Floats
 from frictionlab.scene.receptance import LinearBody
-from frictionlab.scene.signals import Segments, Signal, Wave, highest
+from frictionlab.scene.signals import Segments, Signal, Wave, edges_of, highest
 from frictionlab.theory.periodic_response import PeriodicResponse, periodic_response
 
 POINTS_OF_PANEL = 64
@@ -35,11 +35,12 @@ class FreeSlip(NamedTuple):
         if of is None:
             return self.waves.extremes(period)
         low, high = math.inf, -math.inf
-        for start, stop in itertools.pairwise([*self.corners[:, 0], self.corners[0, 0] + period]):
+        edges = edges_of(sorted({*self.corners[:, 0].tolist(), *self.waves.corners(period)}), period)
+        for start, stop in itertools.pairwise(edges):
             tau = np.linspace(
                 start, stop, 3 + math.ceil(POINTS_OF_PANEL * of.panels * (stop - start) / period)
             )
-            values = self.waves(tau) + self.steady
+            values = self.waves.between(tau) + self.steady
             for at, jump, bend in self.corners:
                 since = np.mod(tau - at, period)
                 values += jump * of.at(of.value, since) + bend * of.at(of.integral, since)
@@ -48,7 +49,7 @@ class FreeSlip(NamedTuple):
 
 
 def friction_free_slip(body: LinearBody, load: Signal, belt: Signal, period: float) -> FreeSlip:
-    """Of a body under this load, on a belt of this vibration, which has no corners."""
+    """Of a body under this load, on a belt of this vibration."""
     waves = Signal(tuple(answered(body, each, 1) for each in load.waves)).plus(belt.scaled(-1.0))
     corners = corners_of(load, period)
     if not len(corners):

@@ -12,7 +12,7 @@ from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
-from frictionlab.theory.free_slip import answered, friction_free_slip
+from frictionlab.theory.free_slip import friction_free_slip
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
 
 _SINGULAR = 64.0 * EPSILON
@@ -25,21 +25,19 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
     The maximum over time of x1' minus the belt's vibration along x1, of the linear response to the loads and, where
     the normal load varies, to the alternating part of the friction of steady sliding, which asks for the law; for a
     prescribed slip that of its oscillation. On a belt that runs backward: of the opposite velocity. For one sine the
-    velocity amplitude. Infinite at undamped resonance, NaN of a body that is not linear. At belt speeds above it a
-    body of one degree of freedom under constant sliding friction never reverses its slip; the curve of the mean has
-    its kink there.
+    velocity amplitude. Infinite at undamped resonance, NaN of a body that is not linear, or whose table does not tell
+    what it answers to the load. At belt speeds above it a body of one degree of freedom under constant sliding
+    friction never reverses its slip; the curve of the mean has its kink there.
 
     Raises ValueError for a normal load that varies without a law.
     Source: Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """
-    if scene.body_terms:
+    if scene.bends:
         return math.nan
-    if not scene.is_harmonic:
+    if scene.remembers or not scene.is_harmonic:
         return _largest_slip(scene, _coefficient(scene, law))
     if scene.degrees_of_freedom == 0:
         return abs(scene.motion().velocity)
-    if scene.remembers:
-        return abs(answered(linear_body(scene), Wave(scene.frequency, scene.mass().force), 1).phasor)
     mass = scene.mass()
     stiffness = complex(mass.stiffness - mass.frequency**2, mass.damping * mass.frequency)
     force = abs(mass.force) * mass.frequency
@@ -51,11 +49,12 @@ def velocity_scale(scene: Scene) -> float:
 
     Of a body that is not linear that of one harmonic, or of its linear springs and dashpots where loads are no sine.
     """
-    if scene.is_harmonic and scene.body_terms and (bends := scene.mass().bends):
+    if not scene.is_harmonic:
+        return _largest_slip(scene, 0.0)
+    if scene.bends:
+        bends = scene.mass().bends
         return scene.frequency * math.hypot(bends.sine, bends.cosine)
-    if scene.is_harmonic:
-        return friction_free_velocity(scene.model_copy(update={"body": None}))
-    return _largest_slip(scene, 0.0)
+    return friction_free_velocity(scene)
 
 
 def friction_free_response(
@@ -93,10 +92,11 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
     """Of its x1' minus the belt's vibration along x1, over the period of the scene; infinite without a bound."""
     signals = scene.signals()
     if scene.remembers:
-        load = signals.load[0].plus(signals.normal_load.scaled(coefficient))
-        low, high = friction_free_slip(linear_body(scene), load, signals.belt[0], signals.period).extremes(
-            signals.period
-        )
+        body, load = linear_body(scene), signals.load[0].plus(signals.normal_load.scaled(coefficient))
+        if not math.isfinite(body.mass) and load.reaches_beyond(body.known_to):
+            return math.nan
+        slip_of_body = friction_free_slip(body, load, signals.belt[0], signals.period)
+        low, high = slip_of_body.extremes(signals.period)
         return high if scene.belt_speed >= 0.0 else -low
     slip = piecewise(signals.belt[0], signals.edges())
     if scene.degrees_of_freedom > 0:

@@ -171,6 +171,21 @@ def test_belt_speeds_that_are_expected_of_are_points() -> None:
     assert 7.0 in set(done.table["scene.belt_speed"])
 
 
+def test_v_lin_of_a_body_that_remembers_is_among_them_and_ends_reversal() -> None:
+    scene = SCENE | {"body": {"fractional": {"coefficient": 0.2, "order": 0.5}}}
+    over = {"scene.belt_speed": {"start": 0.5, "stop": 60, "within": 1e-2}}
+    done = api.run(
+        {"schema": 1, "scene": scene, "laws": LAWS[:1], "sweep": over, "columns": ["shape", "all"]}
+    )
+    v_lin = 10.0 / abs(0.2j + 0.2 * 1j**0.5)
+
+    assert done.curves["reversal_end"].tolist() == pytest.approx([v_lin], rel=1e-12)
+    assert (done.table["velocity_ratio"] - 1.0).abs().min() < 1e-12
+    beyond = done.table["velocity_ratio"] >= 1.0
+    assert (done.table["mean_friction"][beyond] == 0.4).all()
+    assert (done.table["mean_friction"][~beyond] < 0.4).all()
+
+
 def test_metres_per_second_are_chosen_as_well() -> None:
     si = {
         "mass_kg": 2.0, "stiffness_N_per_m": 800.0, "damping_N_s_per_m": 8.0, "length_m": 1e-3,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -122,15 +123,32 @@ def test_the_linear_response_obeys_its_equation_and_repeats(
         assert of.reshape(-1, 5)[:, 4] == pytest.approx(np.roll(of.reshape(-1, 5)[:, 0], -1), abs=size)
 
 
+BODIES: tuple[dict[str, Any], ...] = (
+    {},
+    {"fractional": {"coefficient": 0.3, "order": 0.4}},
+    {"relaxation": {"stiffness": 0.5, "time": 2.0}},
+)
+
+
+def memory(p: Any, fractional: Any = None, relaxation: Any = None) -> Any:
+    """Force over x1 of what of a body remembers, at p = i omega."""
+    slow = p * relaxation["time"] if relaxation else 0.0
+    power = fractional["coefficient"] * p ** fractional["order"] if fractional else 0.0
+    return power + (relaxation["stiffness"] * slow / (1.0 + slow) if relaxation else 0.0)
+
+
 def scene(**keys: Any) -> Scene:
     given = {"damping_ratio": 0.1, "normal_load": 2.0, "belt_speed": 1.0}
     return Scene(**{**given, "drive": {"amplitude": 3.0, "frequency": 1.3}, **keys})
 
 
-@given(form=forms, phase=angles, lead=angles)
-@settings(max_examples=10)
-def test_v_lin_is_the_largest_velocity_over_the_belts(form: Form, phase: float, lead: float) -> None:
+@given(form=forms, phase=angles, lead=angles, body=st.sampled_from(BODIES))
+@settings(max_examples=20)
+def test_v_lin_is_the_largest_velocity_over_the_belts(
+    form: Form, phase: float, lead: float, body: dict[str, Any]
+) -> None:
     shaken = scene(
+        body=body or None,
         drive={"amplitude": 3.0, "frequency": 1.3, "waveform": form.plain(), "phase": phase},
         belt_vibration={"velocity_amplitude": 0.5, "waveform": "triangle", "frequency_ratio": 0.5},
         normal_load_variation={"amplitude": 0.3, "waveform": "sawtooth", "phase": lead},
@@ -140,11 +158,40 @@ def test_v_lin_is_the_largest_velocity_over_the_belts(form: Form, phase: float, 
         tau = (np.arange(n) + 0.5) * signals.period / n
         push = signals.load[0](tau) + side * 0.4 * signals.normal_load(tau)
         rate = 2.0 * math.pi * np.fft.rfftfreq(n, signals.period / n)
-        v = np.fft.irfft(np.fft.rfft(push) * 1j * rate / (1.0 - rate**2 + 0.2j * rate), n)
+        dynamic = 1.0 - rate**2 + 0.2j * rate + memory(1j * rate, **body)
+        v = np.fft.irfft(np.fft.rfft(push) * 1j * rate / dynamic, n)
         v -= signals.belt[0](tau)
 
         found = friction_free_velocity(shaken.at(side), LAW)
         assert found == pytest.approx(float((side * v).max()), rel=2e-3)
+
+
+@pytest.mark.parametrize("body", BODIES[1:])
+def test_v_lin_of_a_sine_is_the_load_over_the_dynamic_stiffness(body: dict[str, Any]) -> None:
+    dynamic = 1.0 - 1.3**2 + 0.26j + memory(1.3j, **body)
+
+    assert friction_free_velocity(scene(body=body)) == pytest.approx(3.0 * 1.3 / abs(dynamic), rel=1e-14)
+
+
+def test_v_lin_of_a_table_is_known_as_far_as_the_table_goes(tmp_path: Path) -> None:
+    omega, file = np.linspace(0.0, 4.0, 9), tmp_path / "h.csv"
+    values = 1.0 / (1.0 - omega**2 + 0.2j * omega)
+    rows = [f"{w},{float(h.real)!r},{float(h.imag)!r}" for w, h in zip(omega, values, strict=True)]
+    file.write_text("\n".join(["frequency,real,imaginary", *rows]))
+
+    def found(frequency: float, waveform: str = "sine", **more: float) -> float:
+        drive = {"amplitude": 3.0, "frequency": frequency, "waveform": waveform}
+        body = {"receptance": {"file": str(file), **more}}
+        return friction_free_velocity(scene(damping_ratio=None, drive=drive, body=body))
+
+    assert found(1.5) == pytest.approx(4.5 * abs(values[3]), rel=1e-13)
+    assert found(5.0, free_mass=2.0) == pytest.approx(3.0 / (2.0 * 5.0), rel=1e-13)
+    assert found(1.0, "square", free_mass=1.0) == pytest.approx(
+        friction_free_velocity(scene(drive={"amplitude": 3.0, "frequency": 1.0, "waveform": "square"})),
+        rel=1e-2,
+    )
+    assert math.isnan(found(5.0))
+    assert math.isnan(found(1.0, "square"))
 
 
 def test_v_lin_under_a_changing_normal_load_asks_for_the_law() -> None:

@@ -26,6 +26,7 @@ _HOMES = {
     "DimensionalInitial": "frictionlab.scene.dimensional",
     "DimensionalLoad": "frictionlab.scene.dimensional",
     "DimensionalNormalLoadVariation": "frictionlab.scene.dimensional",
+    "DimensionalReceptance": "frictionlab.scene.dimensional",
     "DimensionalRelaxation": "frictionlab.scene.dimensional",
     "DimensionalSlip": "frictionlab.scene.dimensional",
     "DimensionalTransverse": "frictionlab.scene.dimensional",

@@ -16,6 +16,7 @@ from frictionlab.scene.waveforms import SINE
 from frictionlab.study import Study
 
 _MINUS = "\N{MINUS SIGN}"
+_BY_TABLE = "body.receptance"
 _SI = {
     "frequency": "frequency_rad_per_s",
     "unbalance": "unbalance_kg_m",
@@ -46,6 +47,8 @@ def letters_sentence(study: Study) -> str:
         told[0] += "; a mass that sticks has v = 0"
     if any("<i>w</i>" in line for line in equations(study)):
         told.append("w is the waveform")
+    if _Numbers.of(study).has(_BY_TABLE):
+        told.append("H is the receptance of the table, harmonic by harmonic")
     if study.scene.dimensional is not None:
         told.append("forces are in N, lengths in m, t in s")
     return f"{'; '.join(told)}."
@@ -124,6 +127,8 @@ def _motion(n: _Numbers, axis: int) -> Markup:
     mass, dashpot, spring = _coefficients(n, axis)
     bent, stretched, more = _bends(n, place, first) if axis == 1 else (first, place, [])
     terms = [_times(mass, second), _times(dashpot, bent), _times(spring, stretched), *more]
+    if axis == 1 and n.has(_BY_TABLE):
+        terms = [_times(Markup("<i>H</i><sup>\N{MINUS SIGN}1</sup>"), place)]
     normal = Markup("<i>N</i>") if n.has("normal_load_variation") else _load(n)
     friction = _times(normal, Markup("<i>T</i><sub>{}</sub>").format(axis))
     left = Markup(" + ").join(each for each in [*terms, friction] if each)

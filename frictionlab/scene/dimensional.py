@@ -20,6 +20,7 @@ from frictionlab.quantities import Finite, NonNegative, Positive, dimensions, gi
 from frictionlab.scene.as_written import AsWritten
 from frictionlab.scene.changed import changed
 from frictionlab.scene.parts import (
+    BY_TABLE,
     BeltVibration,
     Body,
     Drive,
@@ -28,13 +29,17 @@ from frictionlab.scene.parts import (
     Load,
     NormalLoadVariation,
     Order,
+    Receptance,
     Relaxation,
     ScenePart,
     Slip,
     Transverse,
     TransverseSlip,
+    digest_of,
+    file_alone,
 )
-from frictionlab.scene.rules import problems_of_parts, problems_of_slip
+from frictionlab.scene.receptance_table import TabulatedBody, read_receptance
+from frictionlab.scene.rules import problems_of_parts, problems_of_slip, replaced_by_table
 from frictionlab.scene.springs_in_si import (
     DASHPOT,
     SPRING,
@@ -106,14 +111,13 @@ class _Shaken(PartInSI):
 def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI, **inside: Any) -> Any:
     """The SI form of a part that has no keys of its own in SI units, but for those of its base.
 
-    inside: the SI forms of the parts inside it; None of one that has none.
+    inside: the SI forms of the parts inside it.
     """
-    kinds = get_type_hints(part, include_extras=True)
-    kinds |= {name: kind | None for name, kind in inside.items() if kind is not None}
+    kinds = get_type_hints(part, include_extras=True) | {name: kind | None for name, kind in inside.items()}
     fields: dict[str, Any] = {
         key: (kinds[name], ... if field.is_required() else field.default)
         for name, field in part.model_fields.items()
-        if (key := key_in_si(part, name)) not in base.model_fields and inside.get(name, part) is not None
+        if (key := key_in_si(part, name)) not in base.model_fields
     }
     name = f"Dimensional{part.__name__}"
     said = _documented(part, name, example)
@@ -154,6 +158,48 @@ class DimensionalFractional(PartInSI):
         return {"coefficient": self.coefficient_N_sq_per_m / unit, "order": self.order}
 
 
+class DimensionalReceptance(PartInSI):
+    """What a linear body answers, measured or computed by others, in place of mass, spring and dashpot, in SI units.
+
+    file: a CSV file with columns frequency [rad/s], real and imaginary [m/N] of x1 over force, from frequency 0;
+    their names may end in their units, frequency_rad_per_s, real_m_per_N and imaginary_m_per_N.
+    free_mass_kg [kg], > 0: above the last frequency x1 over force is -1/(free mass times frequency^2).
+    digest: found where it is left out, of what the file says; a file that says something else is then refused.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalReceptance(file="no_such_file.csv", free_mass="2 kg")
+    Traceback (most recent call last):
+    frictionlab.mistakes.notes.WrongValues: DimensionalReceptance: there is no file no_such_file.csv
+    """
+
+    nondimensional: ClassVar[type[ScenePart]] = Receptance
+
+    file: str
+    free_mass_kg: Positive | None = None
+    digest: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _file_alone(cls, given: Any) -> Any:
+        return file_alone(given)
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        object.__setattr__(self, "digest", digest_of(self.body(), self.digest, self.file))
+        return self
+
+    def body(self) -> TabulatedBody:
+        """The body of the file, in SI units."""
+        return read_receptance(self.file, self.free_mass_kg, in_si=True)
+
+    def scaled(self, units: Units) -> dict[str, Any]:
+        """The same file, and the units it is in."""
+        return super().scaled(units) | {
+            "frequency_unit": units.time,
+            "receptance_unit": units.force / units.length,
+        }
+
+
 if TYPE_CHECKING:
     DimensionalBody = PartInSI
     DimensionalDrive = PartInSI
@@ -177,7 +223,7 @@ else:
         "cubic_stiffness_N_per_m3=5000",
         relaxation=DimensionalRelaxation,
         fractional=DimensionalFractional,
-        receptance=None,
+        receptance=DimensionalReceptance,
     )
     DimensionalInitial = _in_si(Initial, "x_m=0.001")
     DimensionalSlip = _in_si(Slip, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken)
@@ -226,7 +272,8 @@ class Dimensional(AsWritten):
     belt_speed_m_per_s [m/s]: V_b.
 
     ``slip`` and ``transverse_slip`` prescribe a motion in place of mass, spring, dashpot and loads; normal_load_N is
-    then 1 where it is left out.
+    then 1 where it is left out. ``body.receptance`` stands for mass, spring and dashpot, too; K_1 is then that of the
+    body at rest, M the free mass, where there is none K_1 over the square of the drive's frequency.
     Every number may be text with a unit, its key without one: ``belt_speed="2 mm/s"``, ``frequency="60 Hz"``.
     Leave ``transverse`` out for one degree of freedom.
     Raises WrongValues with every mistake in the values.
@@ -276,13 +323,14 @@ class Dimensional(AsWritten):
 
     @classmethod
     def _needed(cls, data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
-        return () if _prescribed(data) else cls.one_of
+        return () if _prescribed(data) or _by_table(data) else cls.one_of
 
     @model_validator(mode="after")
     def _one_scene(self) -> Dimensional:
         both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
-        problems = [*twice, *(self._of_slip() if self.is_prescribed else problems_of_parts(self))]
+        told = self._of_slip() if self.is_prescribed else [*self._of_table(), *problems_of_parts(self)]
+        problems = [*twice, *told]
         if not problems:
             self._fill()
             problems = [*self._out_of_range()]
@@ -294,6 +342,13 @@ class Dimensional(AsWritten):
         body = "mass_kg", *SPRING, *DASHPOT, "gravity_m_per_s2"
         stray = [name for name in body if getattr(self, name) is not None]
         return [f"{name}: leave it out with a prescribed slip" for name in stray] or problems_of_slip(self)
+
+    def _of_table(self) -> list[str]:
+        if self.table is None:
+            return []
+        own = "mass_kg", *SPRING, *DASHPOT, "gravity_m_per_s2", "transverse"
+        missing = ["normal_load_N: required, body.receptance tells no weight"]
+        return [*replaced_by_table(self, own), *(missing if self.normal_load_N is None else [])]
 
     def _fill(self) -> None:
         """Put in what was left out: it counts as not given where the body is changed."""
@@ -318,6 +373,10 @@ class Dimensional(AsWritten):
     def scales(self) -> Units:
         """L, 1/omega_1, K_1 L and M; of a prescribed slip L, 1/omega and the normal load."""
         length, mass = self.length_m or math.nan, self.mass_kg
+        if self.table is not None:
+            stiffness = 1.0 / self.table.values[0].real
+            mass = self.table.mass if math.isfinite(self.table.mass) else stiffness / self.frequency**2
+            return Units(length, math.sqrt(mass / stiffness), stiffness * length, mass)
         if mass is None:
             return Units(length, 1.0 / self.frequency, self.load)
         return Units(length, time_of(self, mass), stiffness_of(self, mass) * length, mass)
@@ -326,6 +385,12 @@ class Dimensional(AsWritten):
     def is_prescribed(self) -> bool:
         """Whether the slip is prescribed and there is no body."""
         return self.slip is not None or self.transverse_slip is not None
+
+    @property
+    def table(self) -> TabulatedBody | None:
+        """The body by its receptance, in SI units; None of any other."""
+        receptance = getattr(self.body, BY_TABLE, None)
+        return receptance.body() if receptance is not None else None
 
     @property
     def frequency(self) -> float:
@@ -366,6 +431,12 @@ class Dimensional(AsWritten):
                 "damping_ratio": damping_ratio_of(across, mass),
             }
         return found | {"damping_ratio": damping_ratio_of(self, mass)}
+
+
+def _by_table(data: Mapping[str, Any]) -> bool:
+    body = data.get("body")
+    found = body.get(BY_TABLE) if isinstance(body, Mapping) else getattr(body, BY_TABLE, None)
+    return found is not None
 
 
 def _prescribed(data: Mapping[str, Any]) -> bool:

@@ -10,7 +10,7 @@ import cmath
 import math
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, Record
 from frictionlab.scene.body import Bends
@@ -22,6 +22,7 @@ from frictionlab.scene.units import (
     FORCE,
     FREQUENCY,
     LENGTH,
+    MASS,
     STIFFNESS,
     TIME,
     UNBALANCE,
@@ -181,11 +182,25 @@ BY_TABLE = "receptance"
 """Keys of ``body`` that make it nonlinear, that make it remember, and that stands for all of it."""
 
 
+def file_alone(given: Any) -> Any:
+    """What is given of a receptance by its file alone."""
+    return {"file": given} if isinstance(given, str) else given
+
+
+def digest_of(table: TabulatedBody, known: str, file: str) -> str:
+    """Of what a file says. Raises ValueError where another is known."""
+    if known and known != table.digest:
+        raise ValueError(f"{file} has changed since: leave digest out to take it as it is")
+    return table.digest
+
+
 class Receptance(ScenePart):
     """What a linear body answers, measured or computed by others, in place of its mass, spring and dashpot.
 
     file: a CSV file with columns frequency [omega_1], real and imaginary [1/K_1] of x1 over force, from frequency 0.
     free_mass [K_1/omega_1^2], > 0: above the last frequency x1 over force is -1/(free_mass frequency^2).
+    frequency_unit [omega_1], > 0: of the frequencies of the file; 1 where left out.
+    receptance_unit [1/K_1], > 0: of what it says of x1 over force; 1 where left out.
     digest: found where it is left out, of what the file says; a file that says something else is then refused.
 
     >>> import frictionlab as fl
@@ -195,20 +210,30 @@ class Receptance(ScenePart):
     """
 
     file: str
-    free_mass: Positive | None = None
+    free_mass: Annotated[Positive, MASS] | None = None
+    frequency_unit: Positive | None = None
+    receptance_unit: Positive | None = None
     digest: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _file_alone(cls, given: Any) -> Any:
+        return file_alone(given)
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:
-        found = self.body().digest
-        if self.digest and self.digest != found:
-            raise ValueError(f"{self.file} has changed since: leave digest out to take it as it is")
-        object.__setattr__(self, "digest", found)
+        object.__setattr__(self, "digest", digest_of(self._read(), self.digest, self.file))
         return self
+
+    def _read(self) -> TabulatedBody:
+        return read_receptance(self.file, self.free_mass, self.frequency_unit is not None)
 
     def body(self) -> TabulatedBody:
         """The body of the file."""
-        return read_receptance(self.file, self.free_mass)
+        table = self._read()
+        if self.frequency_unit is None and self.receptance_unit is None:
+            return table
+        return table.scaled(self.frequency_unit or 1.0, self.receptance_unit or 1.0)
 
 
 class Body(ScenePart):
@@ -233,11 +258,6 @@ class Body(ScenePart):
     relaxation: Relaxation | None = None
     fractional: Fractional | None = None
     receptance: Receptance | None = None
-
-    @field_validator("receptance", mode="before")
-    @classmethod
-    def _file_alone(cls, given: Any) -> Any:
-        return {"file": given} if isinstance(given, str) else given
 
     def bends(self, damping_ratio: float) -> Any:
         """What it adds to the force of spring and dashpot; empty where that is nothing."""

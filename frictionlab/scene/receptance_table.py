@@ -16,6 +16,8 @@ from frictionlab.scene.receptance import ComplexValues
 NEARLY_FREE = 0.3
 """Share by which it then differs: that of one mode at twice its frequency."""
 COLUMNS_OF_TABLE = "frequency", "real", "imaginary"
+UNITS_OF_TABLE = "_rad_per_s", "_m_per_N", "_m_per_N"
+"""Its columns, and what their names may end in where the file is in SI units."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,11 @@ class TabulatedBody:
         """That of the free mass."""
         return 1.0 / (self.mass * np.asarray(p) ** 2)
 
+    def scaled(self, frequency_unit: float, receptance_unit: float) -> TabulatedBody:
+        """The same body, frequency and receptance multiplied by these; the mass is told in the new units already."""
+        values = tuple(receptance_unit * each for each in self.values)
+        return TabulatedBody(tuple(frequency_unit * each for each in self.frequency), values, self.mass)
+
     def halved(self) -> TabulatedBody:
         """Every other row, the last one kept."""
         last = () if len(self.frequency) % 2 else (-1,)
@@ -113,21 +120,27 @@ def _lagrange(x: Floats, y: ComplexValues, at: Floats) -> ComplexValues:
     return total
 
 
-def read_receptance(file: str, free_mass: float | None) -> TabulatedBody:
-    """The body of a file. Raises ValueError with a sentence that begins with the file and the line."""
+def read_receptance(file: str, free_mass: float | None, in_si: bool = False) -> TabulatedBody:
+    """The body of a file. Raises ValueError with a sentence that begins with the file and the line.
+
+    in_si: the names of columns may have units behind them.
+    """
     path = Path(file)
     try:
         stamp = path.stat().st_mtime_ns
     except OSError as problem:
         raise ValueError(f"there is no file {file}") from problem
-    frequency, values = _read(file, stamp)
+    frequency, values = _read(file, in_si, stamp)
     return TabulatedBody(frequency, values, np.inf if free_mass is None else free_mass)
 
 
 @lru_cache(maxsize=16)
-def _read(file: str, _stamp: int) -> tuple[tuple[float, ...], tuple[complex, ...]]:
+def _read(file: str, in_si: bool, _stamp: int) -> tuple[tuple[float, ...], tuple[complex, ...]]:
     rows = list(csv.reader(Path(file).read_text(encoding="utf-8-sig").splitlines()))
     head = [name.strip() for name in rows[0]] if rows else []
+    if in_si:
+        plain = {f"{name}{unit}": name for name, unit in zip(COLUMNS_OF_TABLE, UNITS_OF_TABLE, strict=True)}
+        head = [plain.get(name, name) for name in head]
     if missing := [name for name in COLUMNS_OF_TABLE if name not in head]:
         raise ValueError(
             f"{file}:1: no column {' and '.join(missing)}; it needs frequency, real and imaginary"

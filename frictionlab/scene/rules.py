@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
+from frictionlab.scene.parts import BY_TABLE
 from frictionlab.scene.signals import FULL_TURN, signal_of
 from frictionlab.scene.waveforms import LONGEST_COMMON, as_fraction
 
@@ -18,6 +19,14 @@ def problems_of_parts(scene: Any) -> list[str]:
     found = [*_missing_parts(scene), *_directions(scene)]
     found = found or [*_problems_of_frequencies(scene)]
     return found or _problems_of_variation(scene)
+
+
+def replaced_by_table(scene: Any, names: Iterable[str]) -> list[str]:
+    """Of these names, and of the others in its body, those that a receptance leaves no room for."""
+    body = [f"body.{name}" for name in type(scene.body).model_fields if getattr(scene.body, name)]
+    stray = [name for name in body if name != f"body.{BY_TABLE}"]
+    stray += [name for name in names if getattr(scene, name) is not None]
+    return [f"{name}: leave it out, body.receptance stands for the whole body" for name in stray]
 
 
 def problems_of_slip(scene: Any) -> list[str]:

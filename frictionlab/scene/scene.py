@@ -39,7 +39,7 @@ from frictionlab.scene.parts import (
     Transverse,
     TransverseSlip,
 )
-from frictionlab.scene.rules import periods_of, problems_of_parts, problems_of_slip
+from frictionlab.scene.rules import periods_of, problems_of_parts, problems_of_slip, replaced_by_table
 from frictionlab.scene.shaking import Shaking, keeps_stiffness, shaking_by
 from frictionlab.scene.signals import Signal, Signals
 from frictionlab.scene.waveforms import SINE, form_of
@@ -131,9 +131,7 @@ class Scene(ScenePart):
         measured = BY_TABLE in self.body_terms
         required = ("normal_load",) if measured else ("damping_ratio", "normal_load")
         missing = [f"{name}: required" for name in required if getattr(self, name) is None]
-        stray = [f"body.{name}" for name in self.body_terms if measured and name != BY_TABLE]
-        stray += ["damping_ratio"] if measured and self.damping_ratio is not None else []
-        left = [f"{name}: leave it out, body.receptance stands for the whole body" for name in stray]
+        left = replaced_by_table(self, ["damping_ratio"]) if measured else []
         return [*missing, *left, *problems_of_parts(self)]
 
     def _shown(self) -> dict[str, Any]:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 SPRING = "stiffness_N_per_m", "natural_frequency_rad_per_s"
 DASHPOT = "damping_N_s_per_m", "damping_ratio"
 SWINGS = "velocity_amplitude_m_per_s", "displacement_amplitude_m", "acceleration_amplitude_m_per_s2"
@@ -50,6 +52,8 @@ def own_length(scene: Any) -> float:
 
 
 def _at_rest(scene: Any) -> float:
+    if scene.table is not None:
+        return float(scene.load * scene.table.values[0].real)
     return 1.0 if scene.is_prescribed else float(scene.load / stiffness_of(scene, scene.mass_kg))
 
 
@@ -59,15 +63,18 @@ def _amplitudes(scene: Any) -> Iterator[float]:
         if load is not None:
             omega = scene.frequency * (getattr(load, "frequency_ratio", None) or 1.0)
             force = load.amplitude_N if load.unbalance_kg_m is None else load.unbalance_kg_m * omega**2
-            yield force * _compliance(part, scene.mass_kg, omega)
+            yield force * _compliance(scene, part, omega)
     for part in (belt, scene.slip, scene.transverse_slip):
         if part is not None:
             omega = scene.frequency * (getattr(part, "frequency_ratio", None) or 1.0)
             yield velocity_of(part, omega) / omega
 
 
-def _compliance(part: Any, mass: float, omega: float) -> float:
+def _compliance(scene: Any, part: Any, omega: float) -> float:
     """Amplitude per force without friction [m/N]; that at rest for an undamped mass at resonance."""
+    if scene.table is not None:
+        return float(abs(scene.table.receptance(np.array([omega]))[0]))
+    mass = scene.mass_kg
     stiffness, time = stiffness_of(part, mass), time_of(part, mass)
     ratio = omega * time
     reply = abs(complex(1.0 - ratio**2, 2.0 * damping_ratio_of(part, mass) * ratio))

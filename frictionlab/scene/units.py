@@ -15,6 +15,7 @@ from frictionlab.quantities import Dimension, Record, dimensions
 LENGTH, VELOCITY, FREQUENCY = Dimension(length=1), Dimension(length=1, time=-1), Dimension(time=-1)
 FORCE, UNBALANCE = Dimension(force=1), Dimension(force=1, time=2)
 TIME, STIFFNESS, CURVATURE = Dimension(time=1), Dimension(force=1, length=-1), Dimension(length=-1)
+MASS = Dimension(force=1, length=-1, time=2)
 CUBIC_STIFFNESS, CUBIC_DAMPING = Dimension(force=1, length=-3), Dimension(force=1, length=-3, time=1)
 SUFFIXES = {
     LENGTH: "m",
@@ -24,6 +25,7 @@ SUFFIXES = {
     UNBALANCE: "kg_m",
     TIME: "s",
     STIFFNESS: "N_per_m",
+    MASS: "kg",
     CURVATURE: "per_m",
     CUBIC_STIFFNESS: "N_per_m3",
     CUBIC_DAMPING: "N_s_per_m3",

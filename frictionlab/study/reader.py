@@ -64,9 +64,13 @@ def read_values(
 
 def _place_receptance(tree: dict[str, Any], folder: FilePath) -> None:
     """Say where the file of scene.body.receptance is: a study names it from its own folder."""
-    at: Any = tree
-    for key in ("scene", "body"):
-        at = at.get(key) if isinstance(at, dict) else None
+    scene = tree.get("scene")
+    for part in (scene, scene.get("dimensional")) if isinstance(scene, dict) else ():
+        if isinstance(part, dict):
+            _place_file(part.get("body"), folder)
+
+
+def _place_file(at: Any, folder: FilePath) -> None:
     if isinstance(at, dict) and isinstance(at.get("receptance"), dict):
         at, key = at["receptance"], "file"
     else:

@@ -530,8 +530,11 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
     }
     found |= {f"body.receptance.{key}" for key in _allowed(receptance, "scene.body.receptance.zzz")}
     found |= {"body.receptance"}
+    in_si = {"dimensional": {"body": {"receptance": nonsense | {"file": "h.csv"}}}}
+    told = _allowed(good() | {"scene": in_si}, "scene.dimensional.body.receptance.zzz")
     ours = [f"dimensional.{part}" for part in (*both, "slip.", "transverse_slip.")]
     shorter = {part + key for part in ours for key in _allowed(si, f"scene.{part}zzz")}
+    shorter |= {"dimensional.body.receptance", *(f"dimensional.body.receptance.{key}" for key in told)}
     assert {without_unit(key) if key.startswith("dimensional.") else key for key in scene} == found | shorter
 
 

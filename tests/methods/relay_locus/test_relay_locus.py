@@ -9,7 +9,7 @@ import numpy as np
 import outside_memory
 import pytest
 from answered import with_columns
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from strategies import sizes
 
@@ -136,16 +136,75 @@ def test_order_one_is_a_dashpot():
     )
 
 
-@pytest.mark.parametrize("order", [1e-6, 1e-9])
-def test_an_order_near_zero_is_a_spring_to_every_harmonic(order):
-    # With a spring k = 1 + c: times in 1/sqrt(k), forces over k, velocities over sqrt(k), damping ratio over sqrt(k).
-    k, speeds = 1.5, np.array([0.2, 1.0, 3.0])
-    body = Body(fractional=Fractional(coefficient=k - 1.0, order=order))
-    ours = answers(RelayLocus(), driven(2.0, 0.8, 0.1, 0.7, body=body), speeds)
-    root = math.sqrt(k)
-    stiffer = driven(2.0 / k, 0.8 / root, 0.1 / root, 0.7 / k)
+def stiffer(scene, stiffness, dashpot, speeds):
+    """Means by ``exact`` of the plain body with spring 1 + stiffness and so much more dashpot: times in 1/sqrt(k),
+    forces over k, velocities over sqrt(k)."""
+    k = 1.0 + stiffness
+    root, drive = math.sqrt(k), scene.drive
+    plain = driven(
+        drive.amplitude / k,
+        drive.frequency / root,
+        (scene.damping_ratio + 0.5 * dashpot) / root,
+        0.4 * scene.normal_load / k,
+    )
+    return answers(Exact(), plain, speeds / root).mean
 
-    np.testing.assert_allclose(ours.mean, answers(Exact(), stiffer, speeds / root).mean, atol=3.0 * order)
+
+def fractional(coefficient, order):
+    return Body(fractional=Fractional(coefficient=coefficient, order=order))
+
+
+def relaxing(stiffness, time, order=1.0):
+    return Body(relaxation=Relaxation(stiffness=stiffness, time=time, order=order))
+
+
+LIMITS = {
+    "an order near one is a dashpot": (lambda c, e: fractional(c, 1.0 - e), 0.0, 1.0),
+    "an order near zero is a spring to every harmonic": (fractional, 1.0, 0.0),
+    "a spring that relaxes slowly is a spring": (lambda c, e: relaxing(c, 1.0 / e), 1.0, 0.0),
+    "a spring that relaxes at once is nothing": (relaxing, 0.0, 0.0),
+}
+"""Bodies of a strength c, e from a limit; there c times so much spring and so much dashpot."""
+
+
+def closing_in(scene, made, limit, speeds, distances):
+    """How far the means of these bodies are from those of the limit, over the distance."""
+    found = [np.abs(answers(RelayLocus(), scene.with_(body=made(e)), speeds).mean - limit) for e in distances]
+    return [off / e for off, e in zip(found, distances, strict=True)]
+
+
+@pytest.mark.parametrize("name", LIMITS)
+@settings(max_examples=3, phases=[Phase.generate])
+@given(plain_curves(), sizes(0.05, 2.0))
+def test_a_body_nears_its_limit_as_fast_as_its_number_does(name, curve, strength):
+    (scene, speeds), (made, spring, dashpot) = curve, LIMITS[name]
+    limit = stiffer(scene, spring * strength, dashpot * strength, speeds)
+
+    far, near = closing_in(scene, lambda e: made(strength, e), limit, speeds, (1e-4, 1e-5))
+
+    np.testing.assert_allclose(far, near, rtol=2e-2, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("made", "limit"),
+    [
+        (lambda e: relaxing(0.5, 2.0, 1.0 - e), relaxing(0.5, 2.0)),
+        (lambda e: relaxing(0.2 / e, e * e, 0.5), fractional(0.2, 0.5)),
+        (lambda e: relaxing(0.2 / e, e), fractional(0.2, 1.0)),
+    ],
+    ids=[
+        "of order one it is the standard linear solid",
+        "stiff and relaxing at once it is a power",
+        "of order one as well, a dashpot",
+    ],
+)
+def test_a_fractional_zener_element_nears_its_limits(made, limit):
+    scene, speeds = driven(2.0, 0.8, 0.1, 0.7), np.array([0.2, 1.0])
+    there = answers(RelayLocus(), scene.with_(body=limit), speeds).mean
+
+    far, near = closing_in(scene, made, there, speeds, (2e-3, 1e-3))
+
+    np.testing.assert_allclose(far, near, rtol=1e-2)
 
 
 @pytest.mark.parametrize("case", outside_memory.CASES)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import outside_memory
+import outside_weyl
 import pytest
 from answered import with_columns
 from hypothesis import Phase, given, settings
@@ -34,6 +35,14 @@ def driven(load, frequency, damping, friction, belt_speed=1.0, **more):
     return Scene(
         damping_ratio=damping, normal_load=friction / 0.4, belt_speed=belt_speed, drive=drive, **more
     )
+
+
+def fractional(coefficient, order):
+    return Body(fractional=Fractional(coefficient=coefficient, order=order))
+
+
+def relaxing(stiffness, time, order=1.0):
+    return Body(relaxation=Relaxation(stiffness=stiffness, time=time, order=order))
 
 
 def answers(method, scene, speeds):
@@ -127,9 +136,7 @@ def test_a_triangle_has_the_mean_that_exact_finds(curve, phase):
 def test_order_one_is_a_dashpot():
     scene, speeds = driven(10.0, 1.0, 0.1, 4.0), [0.5, 5.0, 20.0, 24.0]
 
-    ours = answers(
-        RelayLocus(), scene.with_(body=Body(fractional=Fractional(coefficient=0.2, order=1.0))), speeds
-    )
+    ours = answers(RelayLocus(), scene.with_(body=fractional(0.2, 1.0)), speeds)
 
     np.testing.assert_allclose(
         ours.mean, answers(Exact(), scene.with_(damping_ratio=0.2), speeds).mean, atol=1e-13
@@ -148,14 +155,6 @@ def stiffer(scene, stiffness, dashpot, speeds):
         0.4 * scene.normal_load / k,
     )
     return answers(Exact(), plain, speeds / root).mean
-
-
-def fractional(coefficient, order):
-    return Body(fractional=Fractional(coefficient=coefficient, order=order))
-
-
-def relaxing(stiffness, time, order=1.0):
-    return Body(relaxation=Relaxation(stiffness=stiffness, time=time, order=order))
 
 
 LIMITS = {
@@ -212,7 +211,7 @@ def test_a_relaxing_spring_is_the_motion_with_one_state_more(case):
     frequency, load, limit, belt_speed = case
     body = outside_memory.Body(0.2, [1.0 / 2.0], [0.5])
     mean, rested = outside_memory.Scene(body, load, frequency, limit, belt_speed).solved()
-    scene = driven(load, frequency, 0.1, limit, body=Body(relaxation=Relaxation(stiffness=0.5, time=2.0)))
+    scene = driven(load, frequency, 0.1, limit, body=relaxing(0.5, 2.0))
 
     ours = answers(RelayLocus(), scene, [belt_speed])
 
@@ -220,23 +219,43 @@ def test_a_relaxing_spring_is_the_motion_with_one_state_more(case):
     assert ours.columns["stick_fraction"][0] == pytest.approx(rested, abs=1e-10)
 
 
-def test_a_fractional_body_has_the_mean_of_elements_that_relax():
+def test_a_fractional_body_has_the_mean_of_elements_that_relax_and_of_steps_in_time():
     """Reference: ``python tests/outside_memory.py``, 86 elements a body; they are good to about 1e-9."""
     table = np.genfromtxt(REFERENCE, delimiter=",", names=True)
     assert len(table) >= 20
+    found = []
 
     for row in table:
-        scene = driven(
-            row["load"],
-            row["frequency"],
-            0.1,
-            row["limit"],
-            body=Body(fractional=Fractional(coefficient=0.2, order=row["q"])),
-        )
+        scene = driven(row["load"], row["frequency"], 0.1, row["limit"], body=fractional(0.2, row["q"]))
         ours = answers(RelayLocus(), scene, [row["belt_speed"]])
+        case = row["frequency"], row["load"], row["limit"], row["belt_speed"]
+        steps = [outside_weyl.mean_over_limit(0.2, row["q"], 0.2, case, n) for n in (100, 200, 400)]
+        found.append((ours.mean[0] / 0.4, *steps))
 
         assert ours.mean[0] == pytest.approx(0.4 * row["mean"], abs=2e-9)
         assert ours.columns["stick_fraction"][0] == pytest.approx(row["stick_fraction"], abs=1e-6)
+
+    off = np.abs(np.array(found)[:, 1:] - np.array(found)[:, :1])
+    changes = np.abs(np.diff(np.array(found)[:, 1:]))
+    assert (off[:, 2] <= changes[:, 1] + changes[:, 0] / 4.0).all()
+    sizes_of_error = np.sqrt((off**2).mean(axis=0))
+    assert sizes_of_error[2] < 2e-5
+    assert sizes_of_error[0] / sizes_of_error[2] == pytest.approx(16.0, rel=0.3)  # of second order
+
+
+@pytest.mark.parametrize(
+    ("case", "mean", "apart"),
+    [((1.0, 10.0, 4.0, 10.0), 0.1606837, 7.29e-4), ((0.7, 4.9, 1.0, 3.0), 0.1703979, 1.398e-3)],
+)
+def test_spring_and_dashpot_that_answer_the_drive_alike_leave_another_mean(case, mean, apart):
+    frequency, load, limit, belt_speed = case
+    scene, at = driven(load, frequency, 0.1, limit), 0.2 * (1j * frequency) ** 0.5
+
+    ours = answers(RelayLocus(), scene.with_(body=fractional(0.2, 0.5)), [belt_speed]).mean[0]
+    alike = stiffer(scene, at.real, at.imag / frequency, np.array([belt_speed]))[0]
+
+    assert ours == pytest.approx(mean, abs=1e-7)
+    assert ours / alike - 1.0 == pytest.approx(apart, rel=1e-3)
 
 
 def test_what_the_load_gives_goes_to_dashpot_memory_and_friction():
@@ -257,7 +276,7 @@ def test_what_the_load_gives_goes_to_dashpot_memory_and_friction():
 
 
 def test_velocity_and_friction_obey_the_frequency_response_in_every_harmonic():
-    body = Body(fractional=Fractional(coefficient=0.5, order=0.4))
+    body = fractional(0.5, 0.4)
     scene = driven(2.0, 0.8, 0.1, 1.5, belt_speed=0.5, body=body)
     orbit = RelayLocus().solve([scene], LAW, 1e-9).orbit(0)
     omega = 0.8 * np.arange(1.0, 40.0)
@@ -275,7 +294,7 @@ def test_velocity_and_friction_obey_the_frequency_response_in_every_harmonic():
 
 
 def test_a_belt_at_rest_that_holds_the_body_leaves_its_place_open():
-    body = Body(fractional=Fractional(coefficient=0.5, order=0.4))
+    body = fractional(0.5, 0.4)
 
     ours = RelayLocus().solve([driven(1.0, 0.8, 0.1, 1.5, belt_speed=0.0, body=body)], LAW, 1e-9)
 
@@ -285,7 +304,7 @@ def test_a_belt_at_rest_that_holds_the_body_leaves_its_place_open():
 
 
 def test_auto_takes_it_where_a_body_remembers_and_tells_what_it_cannot_do():
-    body = Body(relaxation=Relaxation(stiffness=0.5, time=2.0))
+    body = relaxing(0.5, 2.0)
     scene = driven(10.0, 1.0, 0.1, 4.0, body=body)
 
     assert Auto().choice(scene, LAW)[0] == RelayLocus()

@@ -43,7 +43,12 @@ CREEPS = (
 )
 
 NO_HARMONICS = (
-    "on a body that remembers shooting needs a drive, over whose harmonics its memory is fitted by springs"
+    "on a body that remembers shooting needs a drive, over whose harmonics its memory is fitted by springs; without "
+    "one it follows standard linear solids alone"
+)
+RELAXES = (
+    "on a belt at rest friction takes over from a spring as long as that relaxes, and may give way later: leave "
+    "initial out, or give a belt speed"
 )
 
 
@@ -85,8 +90,10 @@ class Shooting(Method):
             self.name, scene
         ):
             return reason
-        if scene.undriven and scene.remembers:
+        if scene.undriven and scene.remembers and not is_exact(scene):
             return NO_HARMONICS
+        if scene.undriven and scene.remembers and starts_to_creep(scene):
+            return RELAXES
         if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):

@@ -162,12 +162,13 @@ class Undriven:
     def _conserves(self) -> bool:
         """Whether only friction other than that of sliding takes energy."""
         mass = self._path.mass
-        return mass.damping == 0.0 and not mass.bends and self.law.constant_sliding_friction()
+        elastic = mass.damping == 0.0 and not mass.bends and not mass.relaxing
+        return elastic and self.law.constant_sliding_friction()
 
     @property
     def _forgets(self) -> bool:
         """Whether at rest nothing is left of the motion before."""
-        return self.law.count() == 0
+        return self.law.count() == 0 and not self.scene.remembers
 
     def motion(self) -> PeriodicMotion:
         """The motion reached from the start. Raises NotFound."""
@@ -235,7 +236,7 @@ class Undriven:
     def _loses_energy(self, state: Floats) -> bool:
         """Whether every motion with no more energy than this one loses it, down to steady sliding."""
         path = self._path
-        linear = self._forgets and not path.mass.bends
+        linear = self.law.count() == 0 and not path.mass.bends
         return linear and loses_energy(path.mass, self.law, path.speed, path.from_sliding(state))
 
     def _slides_freely(self, track: Track) -> bool:
@@ -424,7 +425,7 @@ class Undriven:
         turns = turns if motion.long is None else TURNS_SHOWN
         accuracy = max(0.1 * self.tolerance, LEAST)
         # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
-        accuracy = accuracy / FINER if self._forgets else accuracy
+        accuracy = accuracy / FINER if self.law.count() == 0 else accuracy
         track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
         parts = track.tau, track.x, track.v, track.friction, track.stick
         found = Orbit(*(part[: track.filled[0]] for part in parts))

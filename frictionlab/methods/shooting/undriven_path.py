@@ -23,7 +23,7 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
-from frictionlab.methods.periodic.period_map import size_of, start_of
+from frictionlab.methods.periodic.period_map import start_of, whole_size_of
 from frictionlab.methods.periodic.setting import Maps, Setting, held_maps, recorded_map
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
@@ -31,6 +31,7 @@ from frictionlab.scene.body import BodyNumbers, Mass, on_the_line
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.sliding_stability import steady_deflection
+from frictionlab.theory.springs import mass_of
 
 TURN = 2.0 * math.pi
 """The period of the free mass."""
@@ -118,7 +119,7 @@ class UndrivenPath:
     @cached_property
     def mass(self) -> Mass:
         """The numbers of the scene."""
-        return self.scene.mass()
+        return mass_of(self.scene)
 
     @cached_property
     def speed(self) -> float:
@@ -141,7 +142,7 @@ class UndrivenPath:
     @cached_property
     def size(self) -> int:
         """Of a state."""
-        return int(interpreted(size_of)(self.law, 0.0))
+        return int(interpreted(whole_size_of)(self.law, self._body, 0.0))
 
     # --- states ---
 

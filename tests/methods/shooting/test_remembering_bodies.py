@@ -140,9 +140,113 @@ def test_time_steps_lead_to_the_same_mean() -> None:
     assert abs(marched.mean_friction - closed.mean_friction) <= marched.error + closed.error < 1e-3
 
 
-def test_an_undriven_body_that_remembers_is_refused() -> None:
-    scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, body=SOLID)
-    state = fl.steady_state(scene, COULOMB, method="shooting")
+SQUEAKS = fl.Scene(damping_ratio=0.02, normal_load=2, belt_speed=0.3, body=SOLID)
+FALLS = {"mu_kinetic": 0.2, "mu_static": 0.6, "stribeck_speed": 0.5}
 
-    assert state.status == "refused"
-    assert "needs a drive" in state.reason
+
+def falling(speed: float) -> float:
+    """The coefficient of steady sliding."""
+    return 0.2 + 0.4 * math.exp(-((speed / 0.5) ** 2))
+
+
+def test_an_undriven_standard_linear_solid_swings_as_another_integration_does() -> None:
+    def rates(tau: float, state: Any) -> list[float]:
+        x, v, q, z, _ = state
+        slips = v - 1.0
+        bends = slips - 40.0 * abs(slips) / falling(abs(slips)) * z
+        rub = 40.0 * z + 0.1 * bends
+        return [v, -0.04 * v - x - q - 2.0 * rub, 0.5 * v - q / 2.0, bends, rub]
+
+    def largest(tau: float, state: Any) -> float:
+        return float(state[1])
+
+    turned: Any = largest
+    turned.direction = -1.0
+    way = solve_ivp(
+        rates, (0.0, 160.0), [0.0, 1.0, 0.0, 0.0, 0.0], "DOP853", events=turned, rtol=1e-9, atol=1e-11
+    )
+    tau, states = way.t_events[0], way.y_events[0]
+    found = fl.steady_state(
+        SQUEAKS.at(1.0), fl.LuGre(**FALLS, stiffness=40, damping=0.1), method="shooting", tolerance=1e-8
+    )
+
+    assert (found.status, found.model) == ("ok", "undriven stick-slip")
+    assert 2.0 * math.pi * found.period == pytest.approx(tau[-1] - tau[-2], rel=1e-6)
+    assert found.mean_friction == pytest.approx(
+        -(states[-1, -1] - states[-2, -1]) / (tau[-1] - tau[-2]), abs=1e-6
+    )
+    assert found.energy_viscous + found.energy_friction == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_undriven_standard_linear_solid_sticks_and_slips_as_another_integration_does() -> None:
+    def slips(tau: float, state: Any) -> list[float]:
+        x, v, q, _ = state
+        rub = math.copysign(falling(abs(v - 0.3)), v - 0.3)
+        return [v, -0.04 * v - x - q - 2.0 * rub, 0.5 * v - q / 2.0, rub]
+
+    def stuck(tau: float, state: Any) -> list[float]:
+        x, _, q, _ = state
+        return [0.3, 0.0, 0.15 - q / 2.0, -(0.04 * 0.3 + x + q) / 2.0]
+
+    ends: list[Any] = [
+        lambda tau, state: state[1] - 0.3,
+        lambda tau, state: 0.04 * 0.3 + state[0] + state[2] - 2.0 * 0.6,
+    ]
+    for each in ends:
+        each.terminal, each.direction = True, 1.0
+    tau, state, releases = 0.0, np.array([0.0, 0.3, 0.0, 0.0]), []
+    for _ in range(12):
+        rest = solve_ivp(stuck, (tau, tau + 99.0), state, "DOP853", events=ends[1], rtol=1e-11, atol=1e-12)
+        releases.append((rest.t[-1], rest.y[-1, -1]))
+        start = rest.y[:, -1] - [0.0, 1e-11, 0.0, 0.0]
+        slip = solve_ivp(
+            slips, (rest.t[-1], rest.t[-1] + 99.0), start, "DOP853", events=ends[0], rtol=1e-11, atol=1e-12
+        )
+        tau, state = slip.t[-1], slip.y[:, -1]
+        state[1] = 0.3
+    (before, some), (last, more) = releases[-2:]
+    found = fl.steady_state(SQUEAKS, fl.Stribeck(**FALLS), method="shooting", tolerance=1e-9)
+
+    assert (found.status, found.model) == ("ok", "undriven stick-slip")
+    assert 2.0 * math.pi * found.period == pytest.approx(last - before, rel=1e-7)
+    assert found.mean_friction == pytest.approx(-(more - some) / (last - before), abs=1e-7)
+
+
+@pytest.mark.parametrize("time", [0.3, 2.0, 8.0])
+def test_an_undriven_standard_linear_solid_slides_where_its_roots_decay(time: float) -> None:
+    """From next to steady sliding, on belts so fast that friction falls a little less, or more, than they bear."""
+    body = fl.Body(relaxation=fl.Relaxation(stiffness=0.5, time=time))
+
+    def grows(speed: float) -> float:
+        slope = 2.0 * (falling(speed + 1e-6) - falling(speed - 1e-6)) / 2e-6
+        flow = [[0.0, 1.0, 0.0], [-1.0, -0.04 - slope, -1.0], [0.0, 0.5, -1.0 / time]]
+        return float(np.linalg.eigvals(np.array(flow)).real.max())
+
+    slow, fast = 0.5, 3.0  # where they begin to bear it
+    for _ in range(40):
+        slow, fast = (
+            (0.5 * (slow + fast), fast) if grows(0.5 * (slow + fast)) > 0.0 else (slow, 0.5 * (slow + fast))
+        )
+    found = []
+    for share in (0.97, 1.03):
+        scene = SQUEAKS.with_(body=body, belt_speed=share * slow)
+        x = 2.0 * falling(share * slow) + 1e-3
+        found.append(
+            fl.steady_state(
+                scene.with_(initial={"x": x, "velocity": 0}), fl.Stribeck(**FALLS), method="shooting"
+            )
+        )
+
+    assert [each.status for each in found] == ["ok", "ok"]
+    assert found[0].model != "undriven sliding" == found[1].model
+
+
+def test_an_undriven_body_is_refused_where_its_memory_has_no_end() -> None:
+    power = SQUEAKS.with_(body=fl.Body(fractional=fl.Fractional(coefficient=0.2, order=0.5)))
+    at_rest = SQUEAKS.with_(belt_speed=0, initial={"x": 1, "velocity": 0})
+
+    for scene, said in ((power, "needs a drive"), (at_rest, "as long as that relaxes")):
+        state = fl.steady_state(scene, COULOMB, method="shooting")
+        assert state.status == "refused"
+        assert said in state.reason
+    assert fl.steady_state(SQUEAKS.at(0.0), COULOMB, method="shooting").mean_friction == 0.0

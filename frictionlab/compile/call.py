@@ -15,7 +15,6 @@ import numpy as np
 
 from frictionlab.compile.cache import Compiled, compiled
 from frictionlab.compile.interpret import TooLong, interpreted, limited_to
-from frictionlab.compile.kernel_law import KernelLaw, by_itself
 from frictionlab.compile.law_addresses import by_address, without_addresses
 from frictionlab.compile.notice import add_to_compiling, named_while_it_compiles
 from frictionlab.faults import from_outside
@@ -30,11 +29,9 @@ PYTHON_IN_A_TRIAL = 0.5
 
 
 class _Choice:
-    """What the environment asks for: FRICTIONLAB_COMPILE=always, that Python runs no kernel; FRICTIONLAB_KERNELS=own,
-    that every law has kernels of its own."""
+    """What the environment asks for: FRICTIONLAB_COMPILE=always, that Python runs no kernel."""
 
     always_compile = os.environ.get("FRICTIONLAB_COMPILE") == "always"
-    own_kernels = os.environ.get("FRICTIONLAB_KERNELS") == "own"
 
 
 _choice = _Choice()
@@ -150,22 +147,21 @@ class KernelCall:
 
     @property
     def name(self) -> str:
-        """In words, with the law that it is compiled for."""
-        kernel = str(self.kernel.__name__.replace("_", " "))
-        return f"{kernel} for {type(self.law).__name__}" if self.law and _choice.own_kernels else kernel
+        """In words."""
+        return str(self.kernel.__name__.replace("_", " "))
 
     def key(self, arguments: tuple[Any, ...]) -> Any:
         """The kernel and the kinds of its arguments."""
-        law = self.law and (type(self.law), self.law.structure(), _choice.own_kernels)
+        law = self.law and (type(self.law), self.law.structure())
         return self.kernel, law, _kind(arguments)
 
     def entry(self, arguments: tuple[Any, ...]) -> Compiled:
         """The machine code, for arguments like these."""
-        return compiled(self.kernel, None if self.law is None else self._seen(arguments))
+        return compiled(self.kernel, self.law and by_address(self.law, _is_planar(arguments)))
 
     def not_kept(self, arguments: tuple[Any, ...]) -> frozenset[str]:
         """The names of the entries to compile for arguments like these: no machine code is in memory or on disk."""
-        entry = compiled(self.kernel, self._unaddressed())
+        entry = compiled(self.kernel, self.law and without_addresses(self.law))
         held = [each for each in arguments if isinstance(each, Held)]
         # a kernel that others make arguments of is compiled once, whatever they make
         kept = entry.is_kept_at_all() if held else entry.is_kept(*arguments)
@@ -177,17 +173,6 @@ class KernelCall:
         """What the kernel returns where Python runs it."""
         given = [each.for_python if isinstance(each, Held) else each for each in arguments]
         return interpreted(self.kernel)(*((self.law, *given) if self.law else given))
-
-    def _unaddressed(self) -> KernelLaw | None:
-        """The law in numbers of the same types as this kernel sees."""
-        if self.law is None:
-            return None
-        return by_itself(self.law) if _choice.own_kernels else without_addresses(self.law)
-
-    def _seen(self, arguments: tuple[Any, ...]) -> KernelLaw:
-        """The law as this kernel sees it."""
-        assert self.law is not None
-        return by_itself(self.law) if _choice.own_kernels else by_address(self.law, _is_planar(arguments))
 
     def _is_for_machine(self, key: Any, arguments: tuple[Any, ...]) -> bool:
         if _config.DISABLE_JIT or _choice.always_compile or _spent.get(key, 0.0) >= PYTHON_AT_MOST:
@@ -206,9 +191,8 @@ class KernelCall:
     def _limited(self, key: Any, arguments: tuple[Any, ...]) -> tuple[Any, float] | None:
         """The same where Python comes to an end in time; else None, and nothing is written."""
         if self.law is not None and from_outside(type(self.law)):
-            self._seen(
-                arguments
-            )  # what numba cannot compile in a law of others is told whatever Python can do
+            # what numba cannot compile in a law of others is told whatever Python can do
+            by_address(self.law, _is_planar(arguments))
         spent, found, trial = _spent.get(key, 0.0), None, _compiles_nothing.get()
         begin, start = time.thread_time(), time.perf_counter()
         with _unwritten(arguments) as keep:

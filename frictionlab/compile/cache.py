@@ -28,7 +28,7 @@ import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
-from frictionlab.compile import collection  # noqa: F401  # listens
+from frictionlab.compile import collection, counting  # noqa: F401  # one listens, one replaces a search
 from frictionlab.compile.code import FOREIGN, names_used
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.dispatch import KnownLaw, law_of_numbers
@@ -196,7 +196,9 @@ def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
             yield from _pieces_of_code(value, seen)
         elif isinstance(value, np.ndarray):
             yield f"{value.dtype}{value.shape}{value.tobytes()!r}"
-        elif isinstance(value, list | tuple | dict):  # of functions: their own text is an address
+        elif isinstance(value, partial):  # its own text is an address, as are those of lists of functions
+            yield from _pieces([value.func, value.args, value.keywords], seen)
+        elif isinstance(value, list | tuple | dict):
             yield f"{type(value).__name__} of {len(value)}"
             yield from _pieces(itertools.chain(*value.items()) if isinstance(value, dict) else value, seen)
         elif isinstance(value, set | frozenset):  # in another order in every process

@@ -15,9 +15,24 @@ _COMMON: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} | PARTS
 
 
+def _compiled(function: Callable[..., Any], **options: Any) -> Any:
+    """By numba, which would compile it anew for every number or truth that a caller writes out: types will do."""
+    made: Any = numba.njit(**options)(function)
+    if made is function:  # numba compiles nothing
+        return made
+    own = made._compiler.fold_argument_types
+
+    def folded(given: Any, named: Any) -> Any:
+        signature, kinds = own(given, named)
+        return signature, tuple(getattr(kind, "literal_type", kind) for kind in kinds)
+
+    made._compiler.fold_argument_types = folded
+    return made
+
+
 def njit(function: Callable[..., Any]) -> Any:
     """Compile a kernel function; it runs without the interpreter lock and divides as IEEE 754 says."""
-    return numba.njit(**_COMMON, **ENTRIES)(function)
+    return _compiled(function, **_COMMON, **ENTRIES)
 
 
 def inner(function: Callable[..., Any]) -> Any:
@@ -25,7 +40,7 @@ def inner(function: Callable[..., Any]) -> Any:
 
     Never call one from Python: nothing stands in the way of the crash.
     """
-    return numba.njit(**INNER)(function)
+    return _compiled(function, **INNER)
 
 
 def inlined(function: Callable[..., Any]) -> Any:
@@ -38,7 +53,7 @@ def inlined(function: Callable[..., Any]) -> Any:
 
 def fast(function: Callable[..., Any]) -> Any:
     """The same for inner arithmetic that never meets NaN or infinity on purpose."""
-    return numba.njit(fastmath=True, **INNER)(function)
+    return _compiled(function, fastmath=True, **INNER)
 
 
 def embedded(function: Callable[..., Any]) -> Any:
@@ -47,9 +62,9 @@ def embedded(function: Callable[..., Any]) -> Any:
     Left to itself, LLVM calls such a function once it has grown by a few products, and a planar map takes twice the
     time: a body alone is some thirty numbers to be handed over.
     """
-    return numba.njit(forceinline=True, **INNER)(function)
+    return _compiled(function, forceinline=True, **INNER)
 
 
 def fast_embedded(function: Callable[..., Any]) -> Any:
     """``fast``, copied into its callers."""
-    return numba.njit(fastmath=True, forceinline=True, **INNER)(function)
+    return _compiled(function, fastmath=True, forceinline=True, **INNER)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictionlab.compile import cache
+from frictionlab.compile import cache, law_addresses
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.dispatch import KnownLaw, by_dimension
@@ -201,8 +201,12 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 
 
 @pytest.mark.parametrize(
-    "root", [answer_curve, maps_of, follow_undriven, march_laps, harmonics_of_legs, LuGre]
-)
+    "root",
+    [
+        answer_curve, maps_of, follow_undriven, march_laps, harmonics_of_legs, LuGre,
+        law_addresses._on_the_line(law_addresses._called(Coulomb(mu=0.4))),
+    ],
+)  # fmt: skip
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]
 

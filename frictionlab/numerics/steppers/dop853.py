@@ -7,6 +7,7 @@ tables; positions and velocities are ``float`` on the line and ``complex`` in th
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, fast_embedded
@@ -351,8 +352,9 @@ def carrying_nothing(rates: Any) -> Any:
     return carrying
 
 
+@cache
 def _stages_of(rates: Any) -> Any:
-    """``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``."""
+    """``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``: compiled once for all."""
 
     @fast_embedded
     def stages(problem: Any, tau: float, state: State, h: float) -> Stages:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from pydantic import field_validator
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats, Record
+from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
@@ -156,6 +158,25 @@ def beyond_linear(name: str, scene: Scene, taken: Sequence[str] = ()) -> str | N
     """Why a method of this name cannot do the body of a scene, None where it can; taken: keys that it takes."""
     others = [f"body.{term}" for term in scene.body_terms if term not in taken]
     return f"{name} does not take {' and '.join(others)}" if others else None
+
+
+def beyond_balance(name: str, scene: Scene) -> str | None:
+    """Why a method of this name that asks a body for its response in frequency cannot do a scene."""
+    if scene.degrees_of_freedom != 1:
+        return (
+            f"{name} takes a body by its response along one line, with a mass: leave transverse and slip out"
+        )
+    if scene.undriven:
+        return f"{name} needs a drive, whose period is that of the motion"
+    body = linear_body(scene)
+    if not body.dissipates:
+        return f"{name} needs a body that dissipates at every frequency: give damping_ratio or memory"
+    if not math.isfinite(body.mass):
+        return (
+            f"friction has frequencies above the last one of the table, {body.known_to:g}: "
+            "give body.receptance.free_mass"
+        )
+    return None
 
 
 REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})

@@ -56,7 +56,7 @@ def harmonic_parts(scene: Scene, orbit: Orbit, harmonics: int, across: bool = Fa
     k = np.arange(harmonics + 1, dtype=np.int64)
     frequencies: Floats = frequency * k.astype(np.float64)
     values = [one.imag if across else one.real for one in (orbit.v, orbit.friction)]
-    velocity, friction = (_phasors(orbit.tau, one, frequencies) for one in values)
+    velocity, friction = (phasors_of_panels(orbit.tau, one, frequencies) for one in values)
     velocity, friction = (one * np.exp(-1j * lead * k) for one in (velocity, friction))
     size = np.abs(velocity)
     known = (size > _ROUNDING * size.max(initial=0.0)) & (k > 0)
@@ -90,7 +90,7 @@ def _clock(scene: Scene, orbit: Orbit) -> tuple[float, float]:
     return scene.frequency, math.atan2(force.imag, force.real)
 
 
-def _phasors(tau: Floats, values: Floats, frequencies: Floats) -> NDArray[np.complex128]:
+def phasors_of_panels(tau: Floats, values: Floats, frequencies: Floats) -> NDArray[np.complex128]:
     """Of each frequency the F whose Im(F exp(i frequency tau)) is the part of the values; i times the mean at 0."""
     start, end = tau[:, 0], tau[:, -1]
     half, middle = 0.5 * (end - start), 0.5 * (start + end)

@@ -10,7 +10,15 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Status, beyond_linear
+from frictionlab.methods.base import (
+    NOT_UNIQUE,
+    PROVED,
+    Answers,
+    Method,
+    Status,
+    beyond_balance,
+    beyond_linear,
+)
 from frictionlab.methods.relay_locus import curve
 from frictionlab.methods.relay_locus.locus import MOST_INSTANTS
 from frictionlab.methods.relay_locus.orbit import BesideFriction, make_locus_orbits
@@ -71,18 +79,9 @@ class RelayLocus(Method):
             return "relay_locus solves Coulomb friction alone, without mu_static"
         if reason := beyond_linear(self.name, scene, TAKEN):
             return reason
-        if scene.degrees_of_freedom != 1:
-            return "relay_locus works along one line, with a mass: leave transverse and slip out"
-        if scene.undriven:
-            return "relay_locus needs a drive, whose period is that of the motion"
-        body, signals = linear_body(scene), scene.signals()
-        if not body.dissipates:
-            return "relay_locus needs a body that dissipates at every frequency: give damping_ratio or memory"
-        if not math.isfinite(body.mass):
-            return (
-                f"the jumps of friction have frequencies above the last one of the table, {body.known_to:g}: "
-                "give body.receptance.free_mass"
-            )
+        if reason := beyond_balance(self.name, scene):
+            return reason
+        signals = scene.signals()
         if signals.normal_load != Signal():
             return "relay_locus needs a normal load that does not change"
         if signals.belt[0].pieces or corners_of(signals.load[0], signals.period)[:, 1].any():

@@ -10,13 +10,18 @@ from frictionlab.methods.base import Answers, FoundState, Method, about_rest, be
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
+from frictionlab.methods.shooting.by_receptance import (
+    by_receptance,
+    receptance_refusal,
+    solve_by_receptance,
+)
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
 from frictionlab.orbit.record import Orbit
-from frictionlab.scene.parts import BENDING, REMEMBERING
+from frictionlab.scene.parts import BENDING, BY_TABLE, REMEMBERING
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.springs import is_exact
 
@@ -24,6 +29,7 @@ Applies = Callable[[Scene, FrictionLaw], bool]
 Solve = Callable[[Sequence[Scene], FrictionLaw, float], Answers]
 
 CASES: tuple[tuple[Applies, Solve], ...] = (
+    (by_receptance, solve_by_receptance),
     (lambda scene, _law: scene.degrees_of_freedom == 0, solve_prescribed),
     (lambda scene, _law: scene.undriven, solve_undriven),
     (saturates_in_the_plane, solve_saturated),
@@ -70,9 +76,11 @@ class Shooting(Method):
     coordinates, and closes the orbit by Broyden's method with Newton and Picard steps where it stalls. Where no
     theorem makes the state unique it must attract, and starts far from each other must reach it.
     Without a drive the period is an unknown too, and the answer is the state reached from scene.initial: steady
-    sliding, a cycle or rest. Under a prescribed slip the mean is quadrature, or that of the memory's closed loop.
+    sliding, a cycle or rest. Under a prescribed slip the mean is quadrature, or that of the memory's closed loop. Of
+    a body by its receptance the free mass is followed, under a force found by balancing harmonics.
 
-    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
+    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023); balance: Darbre &
+    Wolf (1988).
 
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
@@ -86,7 +94,7 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
-        if reason := beyond_linear(self.name, scene, (*BENDING, *REMEMBERING)) or about_rest(
+        if reason := beyond_linear(self.name, scene, (*BENDING, *REMEMBERING, BY_TABLE)) or about_rest(
             self.name, scene
         ):
             return reason
@@ -98,6 +106,8 @@ class Shooting(Method):
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
+        if by_receptance(scene, law):
+            return receptance_refusal(scene, law)
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"
         if scene.undriven and law.memory_kind == "scalars" and starts_to_creep(scene):

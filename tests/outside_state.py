@@ -81,25 +81,24 @@ def body(scene: dict[str, Any]) -> Body:
     free = "slip" not in scene and "transverse_slip" not in scene
     prescribed_across = "transverse_slip" in scene or bool((scene.get("slip") or {}).get("direction"))
     natural = across.get("natural_frequency", 1.0)
+    damping, bends = 2.0 * scene.get("damping_ratio", 0.0), scene.get("body", {})
     return Body(
         free,
         bool(across) or prescribed_across,
-        2.0 * scene.get("damping_ratio", 0.0),
+        damping,
         1.0,
         2.0 * across.get("damping_ratio", 0.0) * natural,
-        natural**2,
-        max(1.0, natural if across else 0.0, 2.0 * scene.get("damping_ratio", 0.0)),
-        *(
-            scene.get("body", {}).get(name, 0.0)
-            for name in ("cubic_stiffness", "amplitude_damping", "curvature")
-        ),
+        float(natural**2),
+        max(1.0, float(natural) if across else 0.0, damping),
+        # numbers of one type, for one compiled period
+        *(float(bends.get(name, 0.0)) for name in ("cubic_stiffness", "amplitude_damping", "curvature")),
     )
 
 
 def friction(law: dict[str, Any], scene: dict[str, Any]) -> Friction:
     """Of a law by its keys, under the mean normal load of a scene."""
     kind, load = KINDS[law["kind"]], scene.get("normal_load", 1.0)
-    mu = law.get("mu", law.get("mu_kinetic"))
+    mu = float(law.get("mu", law.get("mu_kinetic")))
     stiffness = law.get("stiffness", law.get("contact_stiffness", 0.0) / load)
     if "presliding_length" in law:
         stiffness = mu / law["presliding_length"]
@@ -107,16 +106,16 @@ def friction(law: dict[str, Any], scene: dict[str, Any]) -> Friction:
     return Friction(
         kind,
         mu,
-        law.get("mu_static", mu),
-        law.get("stribeck_speed", 1.0),
-        law.get("exponent", 1.0) if kind == DAHL else law.get("stribeck_exponent", 2.0),
-        law.get("viscosity", 0.0),
-        stiffness,
-        law.get("damping", law.get("contact_damping", 0.0) / load),
-        law.get("breakaway_ratio", 0.7),
+        float(law.get("mu_static", mu)),
+        float(law.get("stribeck_speed", 1.0)),
+        float(law.get("exponent", 1.0) if kind == DAHL else law.get("stribeck_exponent", 2.0)),
+        float(law.get("viscosity", 0.0)),
+        float(stiffness),
+        float(law.get("damping", law.get("contact_damping", 0.0) / load)),
+        float(law.get("breakaway_ratio", 0.7)),
         CURVES[curve],
         (scene.get("normal_load_variation") or {}).get("contact", "per_load") == "constant",
-        load,
+        float(load),
     )
 
 

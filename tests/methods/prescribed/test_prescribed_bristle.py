@@ -26,6 +26,7 @@ from frictionlab.scene.scene import Scene, Slip, TransverseSlip
 
 TOLERANCE = 1e-9
 RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
+NODES_OF_A_LEG, WEIGHTS_OF_A_LEG = np.polynomial.legendre.leggauss(400)
 
 
 def slip(ratio, along=1.0, across=None, angle=0.0, frequency=1.0, normal_load=1.0):
@@ -120,13 +121,12 @@ def closed_form(ratio, softness):
     p = math.exp(-2.0 * (ratio * turn + height) / softness)
     q = math.exp(-2.0 * (ratio * (turn - math.pi) + height) / softness)
     first, second = (-1 + 2 * q - p * q) / (1 - p * q), (1 - 2 * p + p * q) / (1 - p * q)
-    nodes, weights = np.polynomial.legendre.leggauss(400)
-    ahead = turn * nodes
+    ahead = turn * NODES_OF_A_LEG
     path = ratio * (ahead + turn) + np.sin(ahead) + height
-    total = turn * (weights * (1.0 - (1.0 - first) * np.exp(-path / softness))).sum()
-    back = math.pi + (math.pi - turn) * nodes
+    total = turn * (WEIGHTS_OF_A_LEG * (1.0 - (1.0 - first) * np.exp(-path / softness))).sum()
+    back = math.pi + (math.pi - turn) * NODES_OF_A_LEG
     path = height - ratio * (back - turn) - np.sin(back)
-    total += (math.pi - turn) * (weights * (-1.0 + (1.0 + second) * np.exp(-path / softness))).sum()
+    total += (math.pi - turn) * (WEIGHTS_OF_A_LEG * (-1.0 + (1.0 + second) * np.exp(-path / softness))).sum()
     return total / (2.0 * math.pi)
 
 

@@ -107,7 +107,7 @@ class Held:
         """The argument of a kernel that Python runs."""
         return self._made_by_python[1]
 
-    @property
+    @cached_property
     def kind(self) -> Any:
         """What tells it from arguments of other types."""
         return self._call.key(self._arguments)

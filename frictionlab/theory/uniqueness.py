@@ -22,10 +22,15 @@ None of this holds for springs and dashpots that are not linear: a Duffing oscil
 
 from __future__ import annotations
 
+import math
+
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.rest import stays_at_rest
+from frictionlab.theory.rest import friction_at_rest, stays_at_rest
+
+NEARLY_LINEAR = 0.15
+"""Of the force of the linear spring: the largest part of it that the cubic one adds or takes."""
 
 
 def is_unique(scene: Scene, law: FrictionLaw) -> bool:
@@ -71,21 +76,26 @@ def falls_slower_than_dashpots(scene: Scene, law: FrictionLaw) -> bool:
     return fall == 0.0 or largest_normal_load(scene) * fall < _damping(scene)
 
 
-def resonates_once(scene: Scene) -> bool:
+def resonates_once(scene: Scene, law: FrictionLaw) -> bool:
     """Whether a body that is not linear has no two resonances, so that few starts are tried of it. No theorem.
 
-    Of a linear spring, or one that hardens alike to both sides, under a sine no quicker than the free motion, which
-    is twice as quick as that within reach of the load, so that no harmonic resonates either: in all of 3,600 random
-    scenes two starts found what twenty did.
+    Of a spring alike to both sides, under a sine. It may harden, or be linear: under one no quicker than the free
+    motion, which is twice as quick as that within reach of the load, so that no harmonic resonates either. Or its
+    force within reach of load and friction is nearly linear, and one harmonic balances one motion, with friction and
+    without. In all of 3,600 random scenes of either kind two starts found what twenty did.
     """
     mass = scene.mass()
     if not mass.bends or not scene.is_harmonic or not scene.load_along_belt_only:
         return False
-    alike = mass.bends.spring_2 == 0.0 == mass.bends.dashpot_1 and mass.bends.spring_3 >= 0.0
-    reach = max([1.5 * abs(mass.force) / mass.stiffness, *map(abs, one_harmonic_motions(mass))])
-    stiffest = mass.stiffness + 0.75 * mass.bends.spring_3 * reach**2
-    slow = mass.bends.spring_3 == 0.0 or mass.frequency**2 <= mass.stiffness
-    return alike and slow and stiffest < (2.0 * mass.frequency) ** 2
+    hardens, limit = mass.bends.spring_3, mass.normal_load * friction_at_rest(law)
+    motions = [[*map(abs, one_harmonic_motions(mass, rub))] for rub in (0.0, 4.0 / math.pi * limit)]
+    reach = max([1.5 * abs(mass.force) / mass.stiffness, *motions[0]])
+    stiffest = mass.stiffness + 0.75 * hardens * reach**2
+    slow = hardens == 0.0 or mass.frequency**2 <= mass.stiffness
+    once = hardens >= 0.0 and slow and stiffest < (2.0 * mass.frequency) ** 2
+    reach = max([reach, *motions[1]]) + limit / mass.stiffness
+    nearly = abs(hardens) * reach**2 <= NEARLY_LINEAR * mass.stiffness and max(map(len, motions)) < 2
+    return mass.bends.spring_2 == 0.0 == mass.bends.dashpot_1 and (once or nearly)
 
 
 def largest_normal_load(scene: Scene) -> float:

@@ -12,7 +12,9 @@ from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from frictionlab import registry
+from frictionlab.methods.periodic import problem
 from frictionlab.results.loads_in_time import start_is_known
+from frictionlab.theory.uniqueness import resonates_once
 
 LINE: dict[str, Any] = {
     "damping_ratio": 0.1,
@@ -250,5 +252,36 @@ def test_few_starts_are_tried_where_the_spring_resonates_once() -> None:
     once = answered(LINE | {"body": {"cubic_stiffness": 0.01}})
     often = answered(LINE | {"body": {"cubic_stiffness": 0.01}, "drive": {"unbalance": 1, "frequency": 3.5}})
 
-    assert once.reason.startswith("tested: 2 starts ")
-    assert not often.reason.startswith("tested: 2 starts ")
+    soft, softer = (answered(LINE | {"body": {"cubic_stiffness": each}}) for each in (-4e-5, -7e-5))
+
+    for few in (once, soft):
+        assert few.reason.startswith("tested: 2 starts ")
+    for many in (often, softer):
+        assert not many.reason.startswith("tested: 2 starts ")
+
+
+def test_few_starts_find_what_many_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng, law, compared = np.random.default_rng(5), fl.Coulomb(mu=0.4), 0
+    while compared < 12:
+        frequency, friction, bend = np.exp(rng.uniform(np.log([0.2, 0.02, 0.02]), np.log([5.0, 1.2, 0.6])))
+        damping, side = 0.02 + 0.3 * rng.random(), rng.choice([-1.0, 1.0])
+        amplitude = 1.0 / abs(complex(1.0 - frequency**2, 2.0 * damping * frequency))
+        scene = fl.Scene(
+            damping_ratio=damping,
+            normal_load=friction / 0.4,
+            belt_speed=0.5 * frequency * amplitude * rng.random(),
+            drive=fl.Drive(amplitude=1, frequency=frequency),
+            body=fl.Body(cubic_stiffness=side * bend / (max(1.5, amplitude) + friction) ** 2),
+        )
+        if not resonates_once(scene, law):
+            continue
+        compared += 1
+        few = fl.steady_state(scene, law, method="shooting")
+        with monkeypatch.context() as patched:
+            patched.setattr(problem, "resonates_once", lambda *_: False)
+            many = fl.steady_state(scene, law, method="shooting")
+
+        assert (few.status, few.unique) == (many.status, many.unique) == ("ok", "tested")
+        assert few.reason.startswith("tested: 2 starts ")
+        assert not many.reason.startswith("tested: 2 starts ")
+        assert abs(few.mean_friction - many.mean_friction) <= few.error + many.error

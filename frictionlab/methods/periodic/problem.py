@@ -113,7 +113,7 @@ class PeriodicProblem:
         self.falls_slowly = falls_slowly(scene, law)
         check_attraction = law.count() > 0 and self.falls_slowly
         if self.mass.bends and falls_slower_than_dashpots(scene, law):
-            check_attraction = resonates_once(scene)
+            check_attraction = resonates_once(scene, law)
         self.body: BodyNumbers
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
@@ -129,6 +129,7 @@ class PeriodicProblem:
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
         self.size = interpreted(whole_size_of)(law, self.body, self.like)  # of a state
         self.kind = map_kind(law, isinstance(self.like, complex) or bool(self.body.relaxing))
+        self._slides: dict[float, tuple[complex, complex]] = {}  # places, by the friction that shifts them
 
     @property
     def by_implicit_steps(self) -> Self | None:
@@ -285,8 +286,11 @@ class PeriodicProblem:
         if start is not None:
             return complex(start.x, start.x2), complex(start.velocity, start.velocity2)
         friction = self.law.sliding_friction(abs(belt_speed)) if self.law.count() > 0 else 0.0
-        x, v, _z = interpreted(state_of_sliding)(self.body, math.copysign(friction, belt_speed), self.like)
-        return complex(x), complex(v)
+        friction = math.copysign(friction, belt_speed)
+        if friction not in self._slides:
+            x, v, _z = interpreted(state_of_sliding)(self.body, friction, self.like)
+            self._slides[friction] = complex(x), complex(v)
+        return self._slides[friction]
 
     def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:
         """An orbit of so many periods, from its state."""

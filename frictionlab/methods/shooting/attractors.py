@@ -241,8 +241,8 @@ def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
     if law.count() == 0:  # with memory that place is shifted by friction already
         shift = problem.mass.normal_load * law.sliding_friction(abs(scene.belt_speed))
         x += math.copysign(shift, scene.belt_speed)
-    turns = [math.pi * (k + 0.5) / 2.0 for k in range(4)]
-    thrown = [cmath.rect(share * force_swing(scene), turn) for share in (0.5, 1.0) for turn in turns]
+    turns, swing = [math.pi * (k + 0.5) / 2.0 for k in range(4)], force_swing(scene)
+    thrown = [cmath.rect(share * swing, turn) for share in (0.5, 1.0) for turn in turns]
     along = [
         Initial(x=x.real + each.real, velocity=v.real + each.imag, x2=x.imag, velocity2=v.imag)
         for each in thrown

@@ -30,6 +30,7 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.dynamics.step_size import growth_factor, longest_step
 from frictionlab.methods.periodic.case import Case, case_in_piece
+from frictionlab.methods.periodic.maps.creep import BELOW, SLOW, creeps, note_creep
 from frictionlab.methods.periodic.maps.linearization import linearize
 from frictionlab.methods.periodic.maps.modes import (
     OPEN,
@@ -217,6 +218,7 @@ def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> MemoryNode:
     # guards at the start, to be compared with those at the end, and the blocks of all stages
     w, a = _at_start(flow, work, like)
     note_guards(flow, w, a, work)
+    note_creep(flow, w, a, work)
     linearize(flow, flow.anchor, work, like)
     return MemoryNode(flow.anchor, w, a, leaving)
 
@@ -300,6 +302,8 @@ def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, like: 
     last, tau = pace.taken[0] - 1, flow.anchor
     _depart(flow, True, work, like)
     for k in range(first, last + 1):
+        if creeps(law, work):  # how long a slip takes to come to creep is not seen by steps of another motion
+            return -1
         # where events come earlier or later, the last step makes up for it
         h = end - tau if k == last else min(pace.lengths[k], end - tau)
         step(flow, tau, h, work, like)
@@ -353,6 +357,7 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
     work.start[Y] = free * y
     work.start[IMPULSE] = 0.0 * like
     how = Stepping(min(how.accuracy, coarsest(law, body)), how.track, how.pace, how.repeats)
+    work.creep[SLOW] = free * BELOW * how.accuracy
     u, closest, steps = free * u, OPEN, 0
     for k in range(pieces_of(body)):
         here, (tau, end) = case_in_piece(case, k), piece_ends(body, k)

@@ -68,6 +68,7 @@ class Work(NamedTuple):
     radius: Any  # [n] of its yield surface, 0 for none
     unloads: Any  # [n] 1 for a deflection without one that follows the slip wherever that makes it smaller
     mode: Any  # [n] FOLLOWS, SMOOTH or YIELDS
+    creep: Any  # [2] the scale of the slip that creeps, where a step takes its logarithm, and how slow a slip does
     keeps_stiffness: Any  # filled where the contact keeps its stiffness while the normal load changes
     share: Any  # [3] there: the normal load over its mean, and its first and second derivative
 
@@ -108,6 +109,7 @@ def workspace(law: Any, like: Any, contact: Any) -> Work:
         radius=room(law, 1, 0, 0.0),
         unloads=room(law, 1, 0, 0.0),
         mode=room(law, 1, 0, 0.0),
+        creep=room(law, 0, 2, 0.0),
         keeps_stiffness=contact,
         share=room(law, 0, 3, 0.0),
     )

@@ -17,8 +17,9 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_relaxing, by_scalars, length
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import Flow, instant_near, load_share
-from frictionlab.dynamics.relaxing import along_x1, elements_of, energy_unit
+from frictionlab.dynamics.motion import Flow, instant_near, load_share, restoring_force
+from frictionlab.dynamics.relaxing import along_x1, elements_of, energy_unit, relaxing_force
+from frictionlab.methods.periodic.maps.creep import creeps, error_told, rate_taken, velocity_taken, velocity_told
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -110,6 +111,8 @@ def _right_side(i: int, flow: Flow, h: float, work: Work) -> None:
     size, late, per = rows_of(flow), h * SLOPES[i], 1.0 / h
     for row in range(size):
         work.rates[row] = work.rates[row] + late * work.slope[row]
+    if creeps(flow.law, work):
+        work.rates[IMPULSE] = work.rates[IMPULSE] + (late / flow.body.normal_load) * work.slope[U]
     for j in range(i):
         share = COUPLINGS[i, j] * per
         for row in range(size):
@@ -158,15 +161,20 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
         - load_on(body, instant_near(flow, flow.anchor)) * alone
     )
     u = apply(block(work.factors, 2 * n, like), right)
-    share = load_share(body, instant_near(flow, flow.anchor))
-    friction = work.rates[IMPULSE] + share * (alone + apply(block(work.factors, 2 * n + 1, like), u))
     work.increments[first + Y] = GAMMA * h * (work.rates[Y] + u)
     work.increments[first + U] = u
-    work.increments[first + IMPULSE] = GAMMA * h * friction
     for k in range(n):
         moved = apply(block(work.factors, 2 * k + 1, like), u)
         work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
     _stretch(flow, i, h, u, work)
+    if creeps(flow.law, work):
+        held = restoring_force(springs_at(flow, work), work.increments[first + Y], u)
+        held = held + along_x1(relaxing_force(body, work.increments, first + MEMORY + n), like)
+        rubs = -held / body.normal_load
+    else:
+        share = load_share(body, instant_near(flow, flow.anchor))
+        rubs = share * (alone + apply(block(work.factors, 2 * n + 1, like), u))
+    work.increments[first + IMPULSE] = GAMMA * h * (work.rates[IMPULSE] + rubs)
 
 
 square = by_dimension(lambda x: x * x, lambda x: x.real * x.real + x.imag * x.imag)
@@ -208,7 +216,9 @@ def _error(flow: Flow, work: Work, like: Any) -> float:
     """The difference to the embedded method of order 4 in the norm of energy, the impulse's too."""
     n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
     last = rows_of(flow) * (STAGES - 1)
-    error = _elastic(body, work.increments[last + Y]) + square(work.increments[last + U])
+    error = _elastic(body, work.increments[last + Y])
+    velocity = error_told(flow.law, work, work.increments[last + U])
+    error += velocity * velocity
     error += square(body.normal_load * work.increments[last + IMPULSE])
     for k in range(n):
         error += square(_unit(flow, k, work, like) * work.increments[last + MEMORY + k])
@@ -225,21 +235,29 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
     """
     size = rows_of(flow)
     factor(flow, h, work, like)
-    now = instant_near(flow, tau)
+    now, taken = instant_near(flow, tau), work.start[U]
     for i in range(STAGES):
         # stages 6 to 8 are all at the end of the step: its sine and cosine serve them
         _argument(i, flow, work)
         if not _within(flow, work):
             return math.inf
+        taken = work.stage[U]
+        work.stage[U] = velocity_told(flow.law, work, taken)
         if 0 < i < SIMULTANEOUS:
             now = instant_near(flow, tau + TIMES[i] * h)
         fill_rates(flow, now, work, like)
+        if creeps(flow.law, work):
+            work.rates[IMPULSE] = work.rates[IMPULSE] + work.rates[U] / flow.body.normal_load
+        work.rates[U] = rate_taken(flow.law, work, work.stage[U], work.rates[U])
         _right_side(i, flow, h, work)
         _solve(i, flow, h, work, like)
     # the last increment is the difference to the embedded method, and ends the step
     last = size * (STAGES - 1)
     for row in range(size):
         work.end[row] = work.stage[row] + work.increments[last + row]
+    work.end[U] = velocity_told(flow.law, work, taken + work.increments[last + U])
+    if creeps(flow.law, work):
+        work.end[IMPULSE] = work.end[IMPULSE] - (work.end[U] - work.start[U]) / flow.body.normal_load
     return _error(flow, work, like)
 
 
@@ -261,8 +279,11 @@ def within_step(flow: Flow, share: float, work: Work) -> None:
     size, rest = rows_of(flow), 1.0 - share
     for row in range(size):
         bent = work.bends[row] + share * (work.bends[size + row] + share * work.bends[2 * size + row])
-        work.stage[row] = rest * work.start[row] + share * (work.end[row] + rest * bent)
+        end = work.end[row] if row != U else velocity_taken(flow.law, work, work.end[row])
+        work.stage[row] = rest * work.start[row] + share * (end + rest * bent)
     # a polynomial may leave the set of a scalar's values, a straight line does not
     if not _within(flow, work):
         for row in range(size):
             work.stage[row] = rest * work.start[row] + share * work.end[row]
+    else:
+        work.stage[U] = velocity_told(flow.law, work, work.stage[U])

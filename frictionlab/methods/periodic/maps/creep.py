@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_scalars, length
 from frictionlab.dynamics.motion import Flow, instant_near, normal_load
 from frictionlab.methods.periodic.maps.rates import U, Work, friction_in_mode
@@ -24,6 +24,8 @@ WITHOUT_INERTIA = 3e-4
 """Of that: from a slip slower than this to one as slow nothing is left of inertia."""
 HALVES = 4.3
 """Where asinh is half of what its slope at zero makes of it."""
+CLOSE = 0.1
+"""By how much the logarithm of such a slip may be in error: within the accuracy all slips look the same."""
 SLOWEST = -150.0
 """Decimal logarithm of the slowest slip that is told from none: kernels take squares of it."""
 FASTEST = 1e30
@@ -43,10 +45,6 @@ def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
     if far >= slow:
         return
     along = w / far if far > 0.0 else 1.0 + 0.0 * w
-    # what is pulled harder than a slow slip resists turns round and goes on
-    pull = friction_in_mode(law, work, w) + a / normal_load(flow.body, instant_near(flow, flow.anchor))
-    if length(pull) >= length(friction_in_mode(law, work, slow * along)):
-        return
     low, high = SLOWEST, math.log10(slow)
     slope = length(friction_in_mode(law, work, 10.0**low * along)) * 10.0**-low
     while high - low > 0.1:
@@ -55,8 +53,14 @@ def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
             high = middle
         else:
             low = middle
-    if high < math.log10(slow):
-        work.creep[SCALE] = 10.0**high / HALVES
+    if high >= math.log10(slow):
+        return
+    work.creep[SCALE] = 10.0**high / HALVES
+    pull = friction_in_mode(law, work, w) + a / normal_load(flow.body, instant_near(flow, flow.anchor))
+    crawl = WITHOUT_INERTIA * slow
+    if far < crawl and length(pull) >= length(friction_in_mode(law, work, crawl * along)):
+        # what is pulled harder than a crawl resists sets off
+        work.start[U] = (2.0 * crawl / length(pull)) * pull
 
 
 note_creep = by_scalars(_stays_quick, _may_creep)
@@ -67,27 +71,41 @@ which scale; ``work.memory`` is that at the start."""
 creeps = by_scalars(lambda law, work: False, lambda law, work: work.creep[SCALE] > 0.0)
 """creeps(law, work): whether a step from ``work.start`` takes the logarithm of slip.
 
-Slip then changes much sooner than any step sees, and friction with it. By the balance of momentum friction's impulse is
-that of the forces that pull less what slip has gained: those are followed in its place.
+Slip then changes much sooner than any step sees, and friction with it. By the balance of momentum friction's
+impulse is that of the forces that pull, less what slip has gained: that is followed in its place.
 """
 
 
-# --- w = scale sinh(q) along q, and J ---------------------------------------------------------------------------------
+@inner
+def _weightless(work: Work) -> bool:
+    return work.creep[SCALE] == 0.0 or length(work.start[U]) < WITHOUT_INERTIA * work.creep[SLOW]
 
 
-@fast
+@inner
+def _while_slow(law: Any, work: Work, a: Any) -> float:
+    return math.inf if _weightless(work) else 2.0 * length(work.start[U]) / (length(a) + 1e-300)
+
+
+longest_while_slow = by_scalars(lambda law, work, a: math.inf, lambda law, work, a: _while_slow(law, work, a))
+"""longest_while_slow(law, work, a): the longest step worth a trial from a slow slip that goes at the rate a."""
+
+
+# --- w = scale sinh(q) along q, and J -------------------------------------------------------------------------------
+
+
+@inner
 def _logarithm(w: Any, scale: float) -> Any:
     far = length(w)
     return (math.asinh(far / scale) / far) * w if far > 0.0 else 0.0 * w
 
 
-@fast
+@inner
 def _slip(q: Any, scale: float) -> Any:
     far = length(q)
     return (scale * math.sinh(min(far, math.asinh(FASTEST / scale))) / far) * q if far > 0.0 else 0.0 * q
 
 
-@fast
+@inner
 def _stretch_along(w: Any, scale: float) -> float:
     return math.hypot(scale, length(w))
 
@@ -116,7 +134,7 @@ _shrunk = by_dimension(lambda w, scale, way: way / _stretch_along(w, scale), _sh
 """_shrunk(w, scale, way): the way of q that J(w) makes this of."""
 
 
-# --- what a step takes ------------------------------------------------------------------------------------------------
+# --- what a step takes ----------------------------------------------------------------------------------------------
 
 
 @inner
@@ -136,11 +154,6 @@ def _told(work: Work, p: Any) -> Any:
 
 
 @inner
-def _weightless(work: Work) -> bool:
-    return work.creep[SCALE] == 0.0 or length(work.start[U]) < WITHOUT_INERTIA * work.creep[SLOW]
-
-
-@inner
 def _rate_taken(work: Work, w: Any, a: Any) -> Any:
     scale, start = work.creep[SCALE], work.start[U]
     return a if _weightless(work) else _stretched(start, scale, _shrunk(w, scale, a))
@@ -151,9 +164,12 @@ def _error_told(work: Work, error: Any) -> float:
     scale, start, end, most = work.creep[SCALE], work.start[U], work.end[U], length(error)
     if scale == 0.0:
         return most
-    ends = length(_stretched(end, scale, _shrunk(start, scale, error)))
+    lengthens = _shrunk(start, scale, error)
+    ends = length(_stretched(end, scale, lengthens))
+    if _weightless(work):
+        return max(ends, 0.1 * length(end) / (BELOW * WITHOUT_INERTIA))
     # a slip that comes to creep loses its speed on the way, and what of that is in error counts
-    return max(ends, 0.1 * length(end) / (BELOW * WITHOUT_INERTIA)) if _weightless(work) else max(ends, most)
+    return max(ends, most, work.creep[SLOW] / (BELOW * CLOSE) * length(lengthens))
 
 
 velocity_taken = by_scalars(lambda law, work, w: w, lambda law, work, w: _taken(work, w))
@@ -162,5 +178,7 @@ velocity_told = by_scalars(lambda law, work, p: p, lambda law, work, p: _told(wo
 """velocity_told(law, work, p): the other way round."""
 rate_taken = by_scalars(lambda law, work, w, a: a, lambda law, work, w, a: _rate_taken(work, w, a))
 """rate_taken(law, work, w, a): its rate where the velocity held is w and goes at the rate a."""
-error_told = by_scalars(lambda law, work, error: length(error), lambda law, work, error: _error_told(work, error))
-"""error_told(law, work, error): the size of the error of the velocity at ``work.end`` from that of what the step took."""
+error_told = by_scalars(
+    lambda law, work, error: length(error), lambda law, work, error: _error_told(work, error)
+)
+"""error_told(law, work, error): how far the velocity at ``work.end`` is off, from the error of what the step took."""

@@ -30,7 +30,7 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.dynamics.step_size import growth_factor, longest_step
 from frictionlab.methods.periodic.case import Case, case_in_piece
-from frictionlab.methods.periodic.maps.creep import BELOW, SLOW, creeps, note_creep
+from frictionlab.methods.periodic.maps.creep import BELOW, SLOW, creeps, longest_while_slow, note_creep
 from frictionlab.methods.periodic.maps.linearization import linearize
 from frictionlab.methods.periodic.maps.modes import (
     OPEN,
@@ -254,7 +254,7 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
     node, h, steps = _depart(flow, True, work, like), 0.1 * longest, 0
     closest = length(node.w)
     while end - node.tau > 4e-15 * end:
-        h = min(h, longest, end - node.tau)
+        h = min(h, longest, end - node.tau, longest_while_slow(law, work, node.a))
         # one step: too inaccurate, it is repeated shorter
         growth = growth_factor(step(flow, node.tau, h, work, like) / accuracy, 5.0)
         steps += 1

@@ -19,7 +19,13 @@ from frictionlab.compile.dispatch import by_dimension, by_relaxing, by_scalars, 
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import Flow, instant_near, load_share, restoring_force
 from frictionlab.dynamics.relaxing import along_x1, elements_of, energy_unit, relaxing_force
-from frictionlab.methods.periodic.maps.creep import creeps, error_told, rate_taken, velocity_taken, velocity_told
+from frictionlab.methods.periodic.maps.creep import (
+    creeps,
+    error_told,
+    rate_taken,
+    velocity_taken,
+    velocity_told,
+)
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,

@@ -41,8 +41,13 @@ def _measure_bristle(law: Any, body: BodyNumbers, work: Work, like: Any) -> None
     work.unit[0] = math.sqrt(body.normal_load * abs(law.friction(0.0, size, 0.0)) / size)
 
 
+LEAST_EFFECT, LEAST_OF_SCALARS = 1e-6, 1e-3
+"""Of friction, that a number of the size it has in steady sliding is taken to change; of a scalar, whose logarithm is
+shifted by as much as any other coordinate."""
+
+
 @inner
-def _effects(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
+def _effects(law: Any, body: BodyNumbers, work: Work, like: Any, least: float) -> None:
     """Sizes in steady sliding as fast as the friction-free motion; into units, the slope of friction by each."""
     v, n = swing_of(body) + 0.0 * like, count_of(law)
     for k in range(n):
@@ -60,17 +65,17 @@ def _effects(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
         work.memory[k] = here - shift
         slope = length(ahead - law.friction(v, work.memory, work.moving)) / (2.0 * shift)
         work.memory[k] = here
-        work.unit[k] = max(slope, 1e-6 * most / work.size[k])
+        work.unit[k] = max(slope, least * most / work.size[k])
 
 
 def _measure_deflections(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
-    _effects(law, body, work, like)
+    _effects(law, body, work, like, LEAST_EFFECT)
     for k in range(count_of(law)):
         work.unit[k] = math.sqrt(body.normal_load * work.unit[k])
 
 
 def _measure_scalars(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
-    _effects(law, body, work, like)
+    _effects(law, body, work, like, LEAST_OF_SCALARS)
     for k in range(count_of(law)):
         work.unit[k] = body.normal_load * work.unit[k] * work.size[k] / body.frequency
         here = work.memory[k]

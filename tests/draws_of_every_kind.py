@@ -1,7 +1,7 @@
 """Random scenes of every kind that the contract names, as the plain keys of a study, with a law.
 
 Drawn from numpy's generator by the thousands (``Numpy``) or by Hypothesis, which shrinks them (``every_kind``,
-``convergent``): one description for both.
+``convergent``, ``creeping``): one description for both.
 """
 
 from __future__ import annotations
@@ -173,6 +173,44 @@ def scene_of_every_kind(source: Source) -> tuple[Keys, Keys]:
     return scene, own
 
 
+def undriven(source: Source) -> Keys:
+    """A mass that nothing drives, set off at rest on the belt or elsewhere."""
+    scene: Keys = {
+        "damping_ratio": source.among((0.0, log(source, 1e-3, 1.0), log(source, 1e-3, 1.0))),
+        "normal_load": log(source, 0.1, 10.0),
+        "belt_speed": source.among((-1.0, 1.0)) * log(source, 1e-2, 3.0),
+    }
+    if source.among((True, False, False)):
+        far = scene["normal_load"]
+        scene["initial"] = {
+            "x": source.uniform(-2.0, 2.0) * far,
+            "velocity": source.uniform(-2.0, 2.0) * scene["belt_speed"],
+        }
+    return scene
+
+
+def creeping_scene(source: Source) -> tuple[Keys, Keys]:
+    """Any scene, driven or not, under rate-and-state friction, which creeps where others stick."""
+    mu, kind = log(source, 0.1, 1.0), source.among(("line", "line", "plane", "prescribed", "undriven"))
+    if kind == "undriven":
+        scene = undriven(source)
+    else:
+        scene = prescribed(source) if kind == "prescribed" else body(source, kind == "plane", mu)
+    speed, a = abs(scene["belt_speed"]), mu * log(source, 0.01, 0.1)
+    parts = ("drive", "slip", "belt_vibration", "normal_load_variation")
+    frequency = next((scene[name]["frequency"] for name in parts if name in scene), 0.0)
+    length = speed / frequency if frequency else scene["normal_load"] * a
+    return scene, {
+        "kind": "rate-and-state",
+        "mu": mu,
+        "a": a,
+        "b": a * source.among((0.0, source.uniform(0.2, 1.0), source.uniform(0.2, 1.5))),
+        "slip_length": length * log(source, 0.03, 30.0 if frequency else 3.0),
+        "reference_speed": speed * log(source, 0.01, 100.0),
+        "state_law": source.among(("ageing", "slip")),
+    }
+
+
 @st.composite
 def convergent(draw: Any) -> tuple[Keys, Keys]:
     """``convergent_scene`` for Hypothesis."""
@@ -183,3 +221,9 @@ def convergent(draw: Any) -> tuple[Keys, Keys]:
 def every_kind(draw: Any) -> tuple[Keys, Keys]:
     """``scene_of_every_kind`` for Hypothesis."""
     return scene_of_every_kind(_Hypothesis(draw))
+
+
+@st.composite
+def creeping(draw: Any) -> tuple[Keys, Keys]:
+    """``creeping_scene`` for Hypothesis."""
+    return creeping_scene(_Hypothesis(draw))

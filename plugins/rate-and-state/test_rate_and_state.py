@@ -165,8 +165,9 @@ def test_quick_vibration_lowers_the_mean_as_the_averaged_law_says(law, belt_spee
     assert mean == pytest.approx(0.6 + law.a * logarithm - law.b * renewal, abs=1e-6)
 
 
-def test_its_study_keeps_its_promises():
-    done = fl.run(Path(__file__).parent / "study.yaml")
+@pytest.mark.parametrize("study", ["study", "creep"])
+def test_its_studies_keep_their_promises(study):
+    done = fl.run(Path(__file__).parent / f"{study}.yaml")
 
     assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
     assert set(done.table["status"]) == {"ok"}

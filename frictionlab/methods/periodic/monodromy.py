@@ -19,24 +19,29 @@ from frictionlab.methods.periodic.setting import (
 )
 from frictionlab.numerics.linalg import invert, norm
 
+OF_LOGARITHM = 1e-3
+"""The largest shift of the logarithm of a scalar."""
+
 
 @inner
-def _shift(setting: Setting, z: Any, relative: float) -> float:
+def _shift(setting: Setting, z: Any, relative: float, column: int) -> float:
     """It stays below the way the belt moves in a period: that much slip ends a period that was all stick."""
     carried = abs(setting.belt_speed) * scales_of(setting).period
     # Large against the error of the maps, small against the way of the belt, on which the pattern of events hangs.
-    shift = relative * (1.0 + norm(z))
+    shift, scalars = relative * (1.0 + norm(z)), setting.maps.scalars
+    if scalars.first <= column < scalars.end:
+        return min(shift, OF_LOGARITHM * scalars.unit)
     return min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
 
 
 @inner
-def _by_central_quotients(setting: Setting, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
+def _by_central_quotients(setting: Setting, z: Any, asked: float, matrix: Any, gradient: Any) -> None:
     """2 n maps, at least as accurate as asked, and always much finer than the shift."""
     n, relative = z.size, setting.maps.orders.shift
-    shift = _shift(setting, z, relative)
-    accuracy = min(accuracy, relative * shift)
     ahead, behind, trial = np.empty(n), np.empty(n), np.empty(n)
     for column in range(n):
+        shift = _shift(setting, z, relative, column)
+        accuracy = min(asked, relative * shift)
         for row in range(n):
             trial[row] = z[row] + (shift if row == column else 0.0)
         # Central differences: the map bends where the mass sticks, and one-sided ones would be of first order.
@@ -68,10 +73,10 @@ def _accuracy_over_steps(setting: Setting, z: Any) -> float:
 def _over_its_steps(setting: Setting, z: Any, base: PacedMap, matrix: Any, gradient: Any) -> bool:
     """n maps; False where the shift changes the events."""
     ahead, trial = np.empty(z.size), z.copy()
-    shift = _shift(setting, z, setting.maps.orders.kept_shift)
     if base.image.steps < 0 or base.pace.taken[0] > MOST_KEPT:
         return False
     for column in range(z.size):
+        shift = _shift(setting, z, setting.maps.orders.kept_shift, column)
         trial[column] = z[column] + shift
         moved = repeated_map(setting, trial, ahead, base.accuracy, base.pace)
         trial[column] = z[column]

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
+from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing, by_scalars
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.relaxing import (
     elements_of,
@@ -144,6 +144,18 @@ def _grain_of_memory(law: Any, body: BodyNumbers, like: Any) -> Any:
 grain_of = by_law(_no_grain, _no_grain, _grain_of_memory)
 """grain_of(law, body, like): what the steps of a map leave in the mean even if two maps agree, per accuracy over the
 normal load: so much always, and so much over the span."""
+
+
+def _smallest_unit(law: Any, body: BodyNumbers, like: Any) -> float:
+    work, least = workspace(law, like, contact_kind(body)), 1e300
+    measure_scales(law, body, work, like)
+    for k in range(count_of(law)):
+        least = min(least, work.unit[k])
+    return least
+
+
+unit_of_scalars = by_scalars(lambda law, body, like: 1e300, _smallest_unit)
+"""unit_of_scalars(law, body, like): the smallest by which a coordinate of a scalar is measured; 1e300 for none."""
 
 
 # --- the map --------------------------------------------------------------------------------------------------------

@@ -39,7 +39,9 @@ from frictionlab.methods.periodic.period_map import (
     image_by_path,
     paced_image,
     rest_of,
+    size_of,
     start_of,
+    unit_of_scalars,
     unpack,
     whole_size_of,
 )
@@ -86,6 +88,14 @@ class Scales(NamedTuple):
     normal_load: float
 
 
+class Scalars(NamedTuple):
+    """Which coordinates of a state are logarithms of scalars, and the smallest unit they are measured by."""
+
+    first: int
+    end: int
+    unit: float
+
+
 class Maps(NamedTuple):
     """A law on a body: where its functions and its numbers lie, and what a search asks about them."""
 
@@ -98,6 +108,7 @@ class Maps(NamedTuple):
     guess: Any
     free: Any
     size: int  # of a state
+    scalars: Scalars
     remembers: bool
     planar: bool
     per_drive: Scales  # over one period of the drive
@@ -246,9 +257,10 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
         grain, per_time = grain_of(law, on.body, like)
         scales = scales_on(_over(body, 1.0))
         remembers = _has_memory(law)
+        scalars = Scalars(2 * dimension(like), size_of(law, like), unit_of_scalars(law, on.body, like))
         return room, Maps(
             written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
-            whole_size_of(law, body, like), remembers, dimension(like) == 2, scales, swing_of(on.body),
+            whole_size_of(law, body, like), scalars, remembers, dimension(like) == 2, scales, swing_of(on.body),
             of_memory if remembers else of_sliding,
             coarsest_of(law, on.body), grain, per_time,
         )  # fmt: skip

@@ -32,6 +32,8 @@ SMALL_ERROR = 1e-4
 """Error of the mean friction that is small enough, where the tolerance is smaller."""
 ACCURACY, FINER = 1e-7, 1e-9
 """Of the maps of these periods, over the normal load; and of those that tell what they may be off by."""
+HARDLY = 1e-6
+"""Error of the mean of a chaotic motion below which maps may be off by more."""
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
 
@@ -188,12 +190,13 @@ def means_of_attractors(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
 
 
 def with_errors_of_maps(motions: dict[int, LongMotion], means: dict[int, LongMean]) -> dict[int, LongMean]:
-    """Quasi-periodic means are closer to each other than maps are to the motion: add what finer maps change.
+    """Means that are closer to each other than maps are to the motion: add what finer maps change.
 
-    Chaos leaves more than that.
+    So quasi-periodic ones are; chaos leaves more than that, but where it hardly moves the mean.
     """
     told = {
         mean: mean._replace(error=mean.error + 2.0 * motions[place].off_by_maps())
-        for mean, place in {mean: place for place, mean in means.items() if mean.quasi_periodic}.items()
+        for mean, place in {mean: place for place, mean in means.items()}.items()
+        if mean.quasi_periodic or mean.error < HARDLY
     }
     return {place: told.get(mean, mean) for place, mean in means.items()}

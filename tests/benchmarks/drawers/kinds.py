@@ -19,6 +19,7 @@ KINDS = {
     **OUTSIDE,
     "bristles": "bristle laws against LSODA on the interpreted law",
     "undriven": "contacts with memory that nothing drives, against LSODA",
+    "creep": "rate-and-state friction on every kind of scene, against LSODA",
     "planar_curves": "curves in the plane, whose points are solved together, against each alone at 1e-12",
     "multipliers": "floquet of every law against central differences of fine period maps over three shifts",
     "sensitivities": "derivatives of the mean friction against differences of steady states",

@@ -42,6 +42,8 @@ from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, ke
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import BodyNumbers
 
+LITTLE = 1e-2
+"""Of the unit of a scalar: so much of its error counts where friction does not feel it."""
 SIMULTANEOUS = 6
 """From the stage before this one on, all are at the end of the step: its sine and cosine serve them all."""
 
@@ -208,9 +210,12 @@ _within = by_scalars(lambda flow, work: True, _scalars_within)
 
 
 def _unit_of_impulse(flow: Flow, k: int, work: Work, like: Any) -> float:
-    """What a scalar changes in friction, for a radian."""
+    """What a scalar changes in friction, for a radian; or as a state is measured by it, about its own size."""
     effect = length(apply(block(work.jacobian, 3 * k + 2, like), 1.0 + 0.0 * like))
-    return effect * flow.body.normal_load / flow.body.frequency
+    here = length(work.start[MEMORY + k])
+    return max(
+        effect * flow.body.normal_load / flow.body.frequency, LITTLE * work.unit[k] / max(here, work.size[k])
+    )
 
 
 _unit = by_scalars(lambda flow, k, work, like: work.unit[k], _unit_of_impulse)

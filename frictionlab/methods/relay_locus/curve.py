@@ -201,7 +201,8 @@ def approached(setting: LocusSetting, rules: Any, known: FoundMotion, given: Cur
             step = 2.0 * step
         else:
             step = 0.5 * min(abs(step), abs(end - known.speed)) * math.copysign(1.0, step)
-    return sought
+    # what was found last is the motion at a belt speed on the way
+    return Sought(setting, sought.detail, sought.motion, verdict_of(NO_ROOT, 0), sought.left, sought.inverse)
 
 
 @inner

@@ -9,9 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import PROVED, Answers, Status, beyond_balance
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Status, beyond_balance
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
-from frictionlab.methods.shooting.pseudo_force import BalancedMotion, Balancing, MassUnderForce
+from frictionlab.methods.shooting.nyquist import growing_changes
+from frictionlab.methods.shooting.pseudo_force import ROUGH_MEAN, BalancedMotion, Balancing, MassUnderForce
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbit
@@ -20,17 +22,27 @@ from frictionlab.scene.receptance import LinearBody, linear_body
 from frictionlab.scene.receptance_table import TabulatedBody
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.scene.signals import Signal
 
 FEWEST_BALANCED, MOST_BALANCED = 16, 512
 """Harmonics of the force on the mass."""
 BY_CHANCE = 0.02
 """Of the change of friction over a period: it stands in where the means of two motions agree by chance."""
+OTHER_MEAN = 1e-4
+"""By how much means of rough motions differ that are not of one."""
+SEVERAL_BALANCE = "{}: motions of means from {:.6g} to {:.6g} balance"
+UNIQUE = {"ok": PROVED, "not_unique": NOT_UNIQUE}
 UNBALANCED = "no motion found whose harmonics obey the receptance"
 HALF_UNBALANCED = "no error known: every other row of the table gives no motion"
 FALLS = (
-    "on a body by its receptance shooting needs friction that does not fall with speed: of a motion that balances "
-    "nothing else tells whether it is stable"
+    "on a body by its receptance shooting needs one bristle under a constant normal load where friction falls with "
+    "speed: of other motions that balance nothing tells whether they are stable"
 )
+UNSTABLE = "the motion of one period that balances is unstable, and no other is followed"
+UNTOLD = "nothing tells whether the motion that balances is stable, as friction falls with speed"
+ATTRACTS = "it attracts (Nyquist's criterion); whether other starts lead elsewhere is not known"
+FEWEST_COUPLED, MOST_COUPLED = 8, 32
+"""Harmonics of changes of a motion."""
 RESTS = (
     "on a belt at rest the mean may depend on the start, and on a body by its receptance no motion is followed from "
     "one: give a belt speed"
@@ -58,7 +70,11 @@ def receptance_refusal(scene: Scene, law: FrictionLaw) -> str | None:
         return QUICK.format(harmonics, MOST_BALANCED // 2)
     if scene.belt_speed == 0.0:
         return RESTS
-    return FALLS if law.steepest_fall() > 0.0 else None
+    return FALLS if law.steepest_fall() > 0.0 and not _stability_is_told(scene, law) else None
+
+
+def _stability_is_told(scene: Scene, law: FrictionLaw) -> bool:
+    return isinstance(law, BristleLaw) and scene.signals().normal_load == Signal()
 
 
 def solve_by_receptance(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
@@ -76,12 +92,13 @@ class BalancedCurve:
         self.halved: MassUnderForce | None = None
         if isinstance(body, TabulatedBody):
             self.halved = MassUnderForce(self.scene, law, body.halved(), tolerance)
+        self.rough = None if self.mass.contracts else MassUnderForce(self.scene, law, body, ROUGH_MEAN)
         self.fewest = max(FEWEST_BALANCED, math.ceil(body.fastest / self.mass.frequency))
         n = len(scenes)
         self.motions: list[BalancedMotion | None] = [None] * n
         self.status: list[Status] = ["ok"] * n
         self.reason = [""] * n
-        self.mean, self.error, self.seconds = np.full((3, n), np.nan)
+        self.mean, self.error, self.low, self.high, self.seconds = np.full((5, n), np.nan)
         known: BalancedMotion | None = None
         for i in each_told(np.lexsort((-np.abs(self.belt_speeds), self.belt_speeds < 0.0)).tolist()):
             if known is not None and self.belt_speeds[i] * known.belt_speed < 0.0:
@@ -91,24 +108,31 @@ class BalancedCurve:
     def _solve(self, i: int, known: BalancedMotion | None) -> BalancedMotion | None:
         """The motion of one scene, from a neighbour's."""
         speed = float(self.belt_speeds[i])
-        before = self.mass.seconds + (self.halved.seconds if self.halved else 0.0)
+        before = self._spent()
         found = self._refined(speed, known) or (self._refined(speed, None) if known is not None else None)
         if found is None:
             self.status[i], self.reason[i] = "failed", UNBALANCED
         else:
             fine, cut = found
             self.motions[i], self.mean[i] = fine, fine.motion.mean
-            self.error[i] = fine.motion.error + 2.0 * (fine.left + cut) + self._misfit(i, fine)
+            error = fine.motion.error + 2.0 * (fine.left + cut)
+            self.error[i] = error + self._misfit(i, fine)
+            if self.status[i] == "ok":
+                self._compare_far_starts(i, fine)
             if self.error[i] > self.tolerance:
                 why = "the table is too coarse for less" if self.halved else "more harmonics are not balanced"
-                self.reason[i] = f"error {self.error[i]:.1e} above the tolerance: {why}"
-        self.seconds[i] = self.mass.seconds + (self.halved.seconds if self.halved else 0.0) - before
-        return self.motions[i]
+                self._say(i, f"error {self.error[i]:.1e} above the tolerance: {why}")
+        self.seconds[i] = self._spent() - before
+        return found[0] if found else None
+
+    def _spent(self) -> float:
+        return sum(each.seconds for each in (self.mass, self.halved, self.rough) if each is not None)
 
     def _refined(self, speed: float, known: BalancedMotion | None) -> tuple[BalancedMotion, float] | None:
         """The motion with as many harmonics as the tolerance asks for, and what it is from that with half as many."""
         count = self.fewest if known is None else max(self.fewest, known.harmonics // 2)
-        found = Balancing(self.mass, speed, count).found(known)
+        search = Balancing(self.mass, speed, count)
+        found = search.found(known or search.without_friction())
         while found is not None:
             finer = Balancing(self.mass, speed, 2 * count).found(found)
             if finer is None:
@@ -126,13 +150,45 @@ class BalancedCurve:
         other = Balancing(self.halved, fine.belt_speed, fine.harmonics).found(fine)
         if other is not None:
             return _apart(fine, other)
-        self.status[i], self.reason[i], self.mean[i], self.motions[i] = (
-            "failed",
-            HALF_UNBALANCED,
-            np.nan,
-            None,
-        )
+        self._leave(i, "failed", HALF_UNBALANCED)
         return math.nan
+
+    def _compare_far_starts(self, i: int, fine: BalancedMotion) -> None:
+        """Leave the mean open where the search ends elsewhere from the motion without friction, or without slip."""
+        if self.rough is None:
+            return
+        search = Balancing(self.rough, fine.belt_speed, self.fewest)
+        found = [search.found(each) for each in (fine, search.without_friction(), search.without_slip())]
+        means = [each.motion.mean for each in found if each is not None]
+        if means and max(means) - min(means) > OTHER_MEAN:
+            self.low[i], self.high[i] = min(means), max(means)
+            falls = self.law.steepest_fall() > 0.0
+            why = "friction falls with speed" if falls else "the deflection lags behind the slip"
+            self._leave(i, "not_unique", SEVERAL_BALANCE.format(why, self.low[i], self.high[i]))
+        else:
+            self._judge_stability(i, found[0])
+
+    def _judge_stability(self, i: int, rough: BalancedMotion | None) -> None:
+        """Leave a motion that others leave; say of friction that falls what is known."""
+        law, falls, growing = self.law, self.law.steepest_fall() > 0.0, math.nan
+        if rough is not None and isinstance(law, BristleLaw) and _stability_is_told(self.scene, law):
+            orbit, belt = rough.motion.orbit, self.mass.signals.belt[0]
+            slip = orbit.v.real - rough.belt_speed - belt(orbit.tau)
+            most = max(FEWEST_COUPLED, math.ceil(1.5 * self.mass.body.fastest / self.mass.frequency))
+            given = law, self.mass.body, self.mass.normal_load, orbit, slip, min(most, MOST_COUPLED)
+            growing = growing_changes(*given)
+        if growing > 0.5:
+            self._leave(i, "failed", UNSTABLE)
+        elif falls:
+            told = not math.isnan(growing)
+            self._leave(i, "failed", UNTOLD) if not told else self._say(i, ATTRACTS)
+
+    def _leave(self, i: int, status: Status, reason: str) -> None:
+        self.status[i], self.reason[i], self.motions[i] = status, reason, None
+        self.mean[i] = self.error[i] = math.nan
+
+    def _say(self, i: int, reason: str) -> None:
+        self.reason[i] = f"{self.reason[i]}; {reason}" if self.reason[i] else reason
 
     def answers(self) -> Answers:
         """What was found."""
@@ -145,12 +201,15 @@ class BalancedCurve:
         return Answers(
             status=self.status,
             reason=self.reason,
-            model=[model if each else "" for each in ok],
+            model=[model if status != "failed" else "" for status in self.status],
             error_kind=["estimated" if each else "" for each in ok],
             mean=self.mean,
             error=self.error,
             period=np.where(ok, float(self.scene.periods), np.nan),
-            unique=[PROVED if proved and each else "" for each in ok],
+            mean_low=self.low,
+            mean_high=self.high,
+            window=np.where(np.isnan(self.low), np.nan, float(self.scene.periods)),
+            unique=[UNIQUE.get(status, "") if proved or status != "ok" else "" for status in self.status],
             seconds=self.seconds,
             orbit=self._orbit,
         )

@@ -98,16 +98,16 @@ class Shooting(Method):
             self.name, scene
         ):
             return reason
-        if scene.undriven and scene.remembers and not is_exact(scene):
-            return NO_HARMONICS
-        if scene.undriven and scene.remembers and starts_to_creep(scene):
-            return RELAXES
         if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
         if by_receptance(scene, law):
             return receptance_refusal(scene, law)
+        if scene.undriven and scene.remembers and not is_exact(scene):
+            return NO_HARMONICS
+        if scene.undriven and scene.remembers and starts_to_creep(scene):
+            return RELAXES
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"
         if scene.undriven and law.memory_kind == "scalars" and starts_to_creep(scene):

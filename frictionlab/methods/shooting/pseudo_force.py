@@ -159,12 +159,22 @@ class Balancing:
         """The force on the mass in the body's motion without friction."""
         return _flat((self.stiffness * self.receptance - 1.0) * self.mass.loads(self.count))
 
-    def found(self, start: BalancedMotion | None) -> BalancedMotion | None:
-        """From a motion with as many harmonics or others; None where there is none."""
-        force, inverse, state = self.without_friction(), np.eye(2 * self.count), None
-        if start is not None:
+    def without_slip(self) -> Floats:
+        """The force on the mass in its motion on the springs of a contact that does not slip."""
+        law, loads = self.mass.law, self.mass.loads(self.count)
+        depth = law.presliding()
+        spring = self.mass.normal_load * law.sliding_friction(1.0) / depth if 0.0 < depth < math.inf else 0.0
+        x = loads * self.receptance / (1.0 + spring * self.receptance)
+        return _flat((self.stiffness + spring) * x - loads)
+
+    def found(self, start: BalancedMotion | Floats) -> BalancedMotion | None:
+        """From a motion with as many harmonics or others, or from a force; None where there is none."""
+        state: Floats | None = None
+        if isinstance(start, BalancedMotion):
             force, inverse = self._with_as_many(start)
             state = start.motion.curve.states[0]
+        else:
+            force, inverse = start, np.eye(2 * self.count)
         here = self._left_open(force, state, ROUGH_MEAN)
         if here is None:
             return None

@@ -12,18 +12,22 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
+from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
 from frictionlab.methods.shooting import pseudo_force
 from frictionlab.methods.shooting.by_receptance import (
+    ATTRACTS,
     FALLS,
     HALF_UNBALANCED,
     RESTS,
     UNBALANCED,
+    UNSTABLE,
     BalancedCurve,
 )
 from frictionlab.scene.receptance import linear_body
 
 DAHL = fl.Dahl(mu=0.4, stiffness=4)
 LUGRE = fl.LuGre(mu_kinetic=0.4, stiffness=4, damping=0.05)
+FALLING = fl.LuGre(mu_kinetic=0.4, mu_static=0.6, stribeck_speed=10, stiffness=4)
 DUPONT = fl.ElastoPlastic(mu_kinetic=0.4, stiffness=4)
 MASS, SPRING, DASHPOT = 0.5, 1.0, 0.3
 """Of a second body on the one that rubs, on a spring and a dashpot like this."""
@@ -119,10 +123,41 @@ def test_a_coarse_table_is_as_far_from_the_body_as_it_says(tmp_path: Path) -> No
     assert 1e-8 < off <= found.error + fine.error < 1e-3
 
 
+def test_only_a_motion_that_attracts_is_an_answer_where_friction_falls() -> None:
+    drive = fl.Drive(amplitude=10, frequency=0.6)
+    scene = fl.Scene(damping_ratio=0.01, normal_load=10, belt_speed=3, drive=drive)
+    scenes = [scene, scene.at(15.0), scene.at(40.0)]
+    found = BalancedCurve(scenes, FALLING, 1e-7, linear_body(scene)).answers()
+    problem = PeriodicProblem(scene, FALLING, 1e-7)
+    closed = [problem.close([each])[0] for each in scenes]
+
+    leave = [bool(largest_modulus(each.matrices)[0] > 1.0) for each in closed]
+    assert leave == [False, True, False]
+    assert found.status == ["ok", "failed", "ok"]
+    assert found.reason == [ATTRACTS, UNSTABLE, ATTRACTS]
+    means = np.array([each.closed.mean[0] for each in closed])
+    assert found.mean[[0, 2]] == pytest.approx(means[[0, 2]], abs=1e-7)
+
+
+def test_a_mean_that_hangs_on_the_start_is_left_open() -> None:
+    drive = fl.Drive(unbalance=10, frequency=3.567)
+    scene = fl.Scene(damping_ratio=0.0348, normal_load=505.75868775, belt_speed=35, drive=drive)
+    law = fl.Dahl(mu=0.4, contact_stiffness=30).under_load(505.75868775)
+    found = BalancedCurve([scene, scene.at(40.5)], law, 1e-6, linear_body(scene)).answers()
+
+    assert found.status == ["ok", "not_unique"]
+    assert found.mean[0] == pytest.approx(0.25035922, abs=1e-6)
+    assert found.mean_low is not None
+    assert found.mean_high is not None
+    # an orbit of the body's own maps, and sliding on
+    assert (found.mean_low[1], found.mean_high[1]) == pytest.approx((0.3050024, 0.4), abs=1e-4)
+
+
 @pytest.mark.parametrize(
     ("change", "law", "said"),
     [
-        ({}, fl.LuGre(mu_kinetic=0.4, mu_static=0.5, stiffness=4), FALLS),
+        ({}, fl.Stribeck(mu_kinetic=0.4, mu_static=0.5), FALLS),
+        ({"normal_load_variation": fl.NormalLoadVariation(amplitude=0.1)}, FALLING, FALLS),
         ({"belt_speed": 0}, DAHL, RESTS),
         ({"drive.frequency": 0.005}, DAHL, "swings by itself up to harmonic"),
         ({"drive": None}, DAHL, "needs a drive"),

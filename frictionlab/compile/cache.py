@@ -30,7 +30,7 @@ from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from frictionlab.compile import collection, counting  # noqa: F401  # one listens, one replaces a search
 from frictionlab.compile.code import FOREIGN, names_used
-from frictionlab.compile.decorators import njit
+from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.dispatch import KnownLaw, law_of_numbers
 from frictionlab.compile.kept import KeptEntry
 from frictionlab.compile.kernel_law import KernelLaw, by_itself
@@ -123,7 +123,9 @@ def _entry(kernel: Any, law: KnownLaw | None, fields: tuple[str, ...]) -> tuple[
     )
     numbers = None if law is None else _numbers(law, fields)
     name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law and law.kind)}"
-    entry = _module(name, source, kernel=kernel, njit=njit).entry
+    # a kernel that Python may call, too, would be made machine code of twice
+    part = kernel if "no_cpython_wrapper" in kernel.targetoptions else inner(kernel.py_func)
+    entry = _module(name, source, kernel=part, njit=njit).entry
     entry._cache = KeptEntry(name)
     return entry, numbers
 

@@ -435,11 +435,12 @@ def twice_twice(v):
 
 def test_what_only_kernels_call_is_made_to_run_within_their_entries_alone(tmp_path, monkeypatch):
     monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path))
-    assert compiled(twice_twice)(3.0) == 12.0
-    (part,) = _twice.overloads.values()
-    (whole,) = twice_twice.overloads.values()
+    run = compiled(twice_twice)
+    assert run(3.0) == 12.0
+    (part,), (whole,) = _twice.overloads.values(), run.entry.overloads.values()
     engine = whole.library.codegen._engine
 
+    assert not twice_twice.overloads  # which Python has not called
     assert engine.is_symbol_defined(whole.fndesc.llvm_func_name)
     assert not engine.is_symbol_defined(part.fndesc.llvm_func_name)
 

@@ -18,7 +18,7 @@ from frictionlab.methods.relay_locus.locus import (
     mode_before,
 )
 from frictionlab.methods.relay_locus.response import FreeWaves, StepAnswer, side_lag
-from frictionlab.methods.relay_locus.rest_rule import RestRule
+from frictionlab.methods.relay_locus.rest_rule import RestRule, RestRules, rule_at
 from frictionlab.methods.relay_locus.search import (
     FINE,
     NO_ROOT,
@@ -93,7 +93,7 @@ class Sought(NamedTuple):
 @njit
 def follow_curve(
     response: StepAnswer,
-    rules: Any,
+    rules: RestRules,
     forcing: FreeWaves,
     limit: float,
     given: CurveScales,
@@ -121,7 +121,7 @@ def follow_curve(
             sought = approached(setting, rules, known, given)
         out[i, VERDICT], out[i, COUNT] = sought.verdict.kind, sought.motion.times.size
         if sought.verdict.kind == FINE:
-            write_motion(sought, rules[sought.detail.degree], given, out[i], found[i])
+            write_motion(sought, rule_at(rules, sought.detail.degree), given, out[i], found[i])
             out[i, DEGREE] = sought.detail.degree
             before, known = known, known_from(sought, rules)
 
@@ -133,7 +133,7 @@ def nothing_known(speed: float, given: CurveScales) -> FoundMotion:
 
 
 @inner
-def known_from(sought: Sought, rules: Any) -> FoundMotion:
+def known_from(sought: Sought, rules: RestRules) -> FoundMotion:
     """What was found."""
     motion, n = sought.motion, sought.motion.times.size
     times, modes, slopes, count = np.empty(n), np.empty(n), np.empty(n), 0
@@ -178,7 +178,7 @@ def foreseen(setting: LocusSetting, known: FoundMotion, before: FoundMotion) -> 
 
 
 @inner
-def approached(setting: LocusSetting, rules: Any, known: FoundMotion, given: CurveScales) -> Sought:
+def approached(setting: LocusSetting, rules: RestRules, known: FoundMotion, given: CurveScales) -> Sought:
     """The motion at the setting's belt speed by motions on the way from the known one, in steps as long as they can
     be."""
     end = setting.belt_speed
@@ -207,7 +207,7 @@ def approached(setting: LocusSetting, rules: Any, known: FoundMotion, given: Cur
 
 @inner
 def mended_motion(
-    setting: LocusSetting, rules: Any, motion: Instants, detail: Detail, given: CurveScales
+    setting: LocusSetting, rules: RestRules, motion: Instants, detail: Detail, given: CurveScales
 ) -> Sought:
     """The motion from a guess, after changes of its pieces that their own check asks for."""
     last, period, left, inverse = (
@@ -221,13 +221,13 @@ def mended_motion(
         n = motion.times.size
         if n < 2 or n >= MOST_INSTANTS:
             break
-        rule, guess = rules[detail.degree], motion
+        rule, guess = rule_at(rules, detail.degree), motion
         motion = Instants(motion.times.copy(), motion.modes, np.zeros((n, rule.nodes.size)))
         derivatives, left = np.empty((n, n)), np.empty(n)
         verdict = settle_instants(setting, rule, motion, derivatives, left)
         rough = misfit_of_rests(setting, rule, motion) if verdict.kind == FINE else 0.0
         if rough > detail.enough * setting.limit and detail.longest > 0.1 * given.longest:
-            higher = detail.degree < len(rules) - 1
+            higher = detail.degree < rules.sizes.shape[0] - 1
             longest = detail.longest if higher else 0.5 * detail.longest
             detail = Detail(detail.degree + 1 if higher else detail.degree, longest, detail.enough)
             continue
@@ -298,9 +298,9 @@ def misfit_of_rests(setting: LocusSetting, rule: RestRule, motion: Instants) -> 
 
 
 @inner
-def degree_seen(sought: Sought, rules: Any) -> int:
+def degree_seen(sought: Sought, rules: RestRules) -> int:
     """The place of the rule beyond which there is nothing but rounding in any rest."""
-    motion, rule, last = sought.motion, rules[sought.detail.degree], 0
+    motion, rule, last = sought.motion, rule_at(rules, sought.detail.degree), 0
     rounding = 0.3 * sought.detail.enough * sought.setting.limit
     for j in range(motion.times.size):
         if motion.modes[j] == 0.0:
@@ -309,7 +309,7 @@ def degree_seen(sought: Sought, rules: Any) -> int:
                 m -= 1
             last = max(last, m)
     for k in range(sought.detail.degree):
-        if rules[k].nodes.size - 1 >= last + 2:
+        if rules.sizes[k, 0] - 1 >= last + 2:
             return k
     return sought.detail.degree
 

@@ -23,7 +23,7 @@ from frictionlab.methods.relay_locus import curve
 from frictionlab.methods.relay_locus.locus import MOST_INSTANTS
 from frictionlab.methods.relay_locus.orbit import BesideFriction, make_locus_orbits
 from frictionlab.methods.relay_locus.response import FreeWaves, response_of
-from frictionlab.methods.relay_locus.rest_rule import rest_rule
+from frictionlab.methods.relay_locus.rest_rule import rest_rules
 from frictionlab.methods.relay_locus.search import FINE
 from frictionlab.methods.words import ModelWord
 from frictionlab.orbit.record import Orbits
@@ -127,7 +127,7 @@ class LocusCurve:
         self.forcing = FreeWaves(waves_of(self.free.waves), bends, self.free.steady)
         self.longest = (LONGEST_REST if body.smooth else LONGEST_GRADED) / body.fastest
         terms = terms_of_response(min(self.longest, self.period) * body.fastest)
-        self.rules = tuple(rest_rule(each, terms, 1 if body.smooth else GRADING) for each in REST_DEGREES)
+        self.rules = rest_rules(REST_DEGREES, terms, 1 if body.smooth else GRADING)
         reversing = self._without_reversal()
         reversing = self._without_motion(reversing)
         if len(reversing):

@@ -25,7 +25,7 @@ from frictionlab.methods.relay_locus.response import (
     waves_at,
     wrapped,
 )
-from frictionlab.methods.relay_locus.rest_rule import RestRule
+from frictionlab.methods.relay_locus.rest_rule import RestRule, RestRules, rule_at
 from frictionlab.methods.relay_locus.search import empty_motion
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.recorder import Track, grown, track_of
@@ -49,7 +49,7 @@ class BesideFriction(NamedTuple):
 @njit
 def make_locus_orbits(
     response: StepAnswer,
-    rules: Any,
+    rules: RestRules,
     forcing: FreeWaves,
     around: BesideFriction,
     given: Any,
@@ -65,7 +65,10 @@ def make_locus_orbits(
     room, track = 64, track_of(64)
     for i in range(belt_speeds.size):
         if counts[i] >= 0:
-            setting, rule = LocusSetting(response, forcing, given[0], belt_speeds[i]), rules[degrees[i]]
+            setting, rule = (
+                LocusSetting(response, forcing, given[0], belt_speeds[i]),
+                rule_at(rules, degrees[i]),
+            )
             motion = as_found(setting, rule, found[i], counts[i])
             edges = panel_edges(setting, motion, around.smooth)
             if track.filled[0] + edges.size > room:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from frictionlab.compile.decorators import inner
 from frictionlab.quantities import Floats
 
 
@@ -42,6 +43,55 @@ class RestRule(NamedTuple):
     to_polynomials: Any
     samples: Any
     of_samples: Any
+
+
+class RestRules(NamedTuple):
+    """Rules of ascending degree, of each the numbers in a row: kernels carry two arrays in place of twelve a rule.
+
+    sizes [rules, 4]: nodes, terms, places and samples. numbers [rules, longest]: the arrays of a rule in a row.
+    """
+
+    grading: float
+    sizes: Any
+    numbers: Any
+
+
+def rest_rules(degrees: tuple[int, ...], terms: int, grading: int) -> RestRules:
+    """Those of these degrees."""
+    rules = [rest_rule(degree, terms, grading) for degree in degrees]
+    sizes = [(each.nodes.size, terms, each.places.size, each.samples.size) for each in rules]
+    rows = [np.concatenate([array.ravel() for array in each[1:]]) for each in rules]
+    numbers = np.zeros((len(rules), max(map(len, rows))))
+    for row, written in zip(numbers, rows, strict=True):
+        row[: len(written)] = written
+    return RestRules(float(grading), np.array(sizes), numbers)
+
+
+@inner
+def rule_at(rules: RestRules, k: int) -> RestRule:
+    """One of them."""
+    row, sizes = rules.numbers[k], rules.sizes[k]
+    n, terms, places, samples = sizes[0], sizes[1], sizes[2], sizes[3]
+    lags, leads = n + terms, n + 2 * terms
+    before, after = leads + terms * n * n, leads + 2 * terms * n * n
+    at, of_all = after + places, after + places + places * n
+    end, mean = of_all + n, of_all + 2 * n
+    to, at_samples = mean + n * n, mean + n * n + samples
+    return RestRule(
+        rules.grading,
+        row[:n],
+        row[n:lags],
+        row[lags:leads],
+        row[leads:before].reshape(terms, n * n),
+        row[before:after].reshape(terms, n * n),
+        row[after:at],
+        row[at:of_all].reshape(places, n),
+        row[of_all:end],
+        row[end:mean],
+        row[mean:to].reshape(n, n),
+        row[to:at_samples],
+        row[at_samples : at_samples + samples * n].reshape(samples, n),
+    )
 
 
 @lru_cache(maxsize=64)

@@ -41,8 +41,8 @@ FALLS = (
 UNSTABLE = "the motion of one period that balances is unstable, and no other is followed"
 UNTOLD = "nothing tells whether the motion that balances is stable, as friction falls with speed"
 ATTRACTS = "it attracts (Nyquist's criterion); whether other starts lead elsewhere is not known"
-FEWEST_COUPLED, MOST_COUPLED = 8, 32
-"""Harmonics of changes of a motion."""
+FEWEST_COUPLED, MOST_COUPLED, NEARLY_WHOLE = 16, 64, 0.1
+"""Harmonics of changes of a motion; they are enough where so many changes grow, but for this."""
 RESTS = (
     "on a belt at rest the mean may depend on the start, and on a body by its receptance no motion is followed from "
     "one: give a belt speed"
@@ -132,7 +132,7 @@ class BalancedCurve:
         """The motion with as many harmonics as the tolerance asks for, and what it is from that with half as many."""
         count = self.fewest if known is None else max(self.fewest, known.harmonics // 2)
         search = Balancing(self.mass, speed, count)
-        found = search.found(known or search.without_friction())
+        found = search.found(known or search.without_friction()) or search.found(search.without_slip())
         while found is not None:
             finer = Balancing(self.mass, speed, 2 * count).found(found)
             if finer is None:
@@ -174,9 +174,10 @@ class BalancedCurve:
         if rough is not None and isinstance(law, BristleLaw) and _stability_is_told(self.scene, law):
             orbit, belt = rough.motion.orbit, self.mass.signals.belt[0]
             slip = orbit.v.real - rough.belt_speed - belt(orbit.tau)
-            most = max(FEWEST_COUPLED, math.ceil(1.5 * self.mass.body.fastest / self.mass.frequency))
-            given = law, self.mass.body, self.mass.normal_load, orbit, slip, min(most, MOST_COUPLED)
-            growing = growing_changes(*given)
+            most = max(FEWEST_COUPLED, math.ceil(1.2 * self.mass.body.fastest / self.mass.frequency))
+            while math.isnan(growing) and most <= MOST_COUPLED:
+                found = growing_changes(law, self.mass.body, self.mass.normal_load, orbit, slip, most)
+                growing, most = found if abs(found - np.round(found)) < NEARLY_WHOLE else math.nan, 2 * most
         if growing > 0.5:
             self._leave(i, "failed", UNSTABLE)
         elif falls:

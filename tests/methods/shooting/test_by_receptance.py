@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
-from frictionlab.methods.shooting import pseudo_force
+from frictionlab.methods.shooting import by_receptance, pseudo_force
 from frictionlab.methods.shooting.by_receptance import (
     ATTRACTS,
     FALLS,
@@ -137,6 +137,29 @@ def test_only_a_motion_that_attracts_is_an_answer_where_friction_falls() -> None
     assert found.reason == [ATTRACTS, UNSTABLE, ATTRACTS]
     means = np.array([each.closed.mean[0] for each in closed])
     assert found.mean[[0, 2]] == pytest.approx(means[[0, 2]], abs=1e-7)
+
+
+def test_where_one_start_leads_nowhere_another_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    balanced = pseudo_force.Balancing.found
+
+    def found(self: Any, start: Any) -> Any:
+        free = isinstance(start, np.ndarray) and np.array_equal(start, self.without_friction())
+        return None if free else balanced(self, start)
+
+    monkeypatch.setattr(pseudo_force.Balancing, "found", found)
+    answers = BalancedCurve([LINE], DAHL, 1e-6, linear_body(LINE)).answers()
+
+    assert answers.status == ["ok"]
+
+
+@pytest.mark.parametrize(("told", "status"), [((0.77, 0.02), "ok"), ((0.77, 0.98), "failed")])
+def test_stability_is_told_by_as_many_harmonics_as_tell_it(
+    monkeypatch: pytest.MonkeyPatch, told: tuple[float, ...], status: str
+) -> None:
+    answers = iter(told)
+    monkeypatch.setattr(by_receptance, "growing_changes", lambda *given: next(answers))
+
+    assert BalancedCurve([LINE], DAHL, 1e-6, linear_body(LINE)).answers().status == [status]
 
 
 def test_a_mean_that_hangs_on_the_start_is_left_open() -> None:

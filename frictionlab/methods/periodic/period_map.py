@@ -31,13 +31,12 @@ from frictionlab.methods.periodic.maps.memory_state import (
     remember_sliding,
     unpack_memory,
 )
-from frictionlab.methods.periodic.maps.pace import Stepping, noting
+from frictionlab.methods.periodic.maps.pace import Stepping
 from frictionlab.methods.periodic.maps.path import path_map
 from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
 from frictionlab.numerics.vectors import dimension
-from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -209,12 +208,6 @@ paced_image = by_law(_image_without_memory, _image_with_memory, _image_with_memo
 repeated; leaves image - state in residual.
 
 steps is -1 where it gave up, or where the events of this state are not those of the steps repeated."""
-
-
-@inner
-def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
-    """The image of a state after one span of the body; leaves image - state in residual."""
-    return paced_image(case, state, residual, noting(accuracy, track_of(0)))
 
 
 def _rest_with_a_bristle(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> float:

@@ -20,8 +20,10 @@ from frictionlab.methods.periodic.continuation import CLOSED
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
 from frictionlab.methods.periodic.lane_map import lane_map, rows_for
 from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
-from frictionlab.methods.periodic.period_map import image_of
+from frictionlab.methods.periodic.maps.pace import noting
+from frictionlab.methods.periodic.period_map import paced_image
 from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.orbit.recorder import track_of
 
 LAW = fl.Coulomb(mu=0.4)
 FALLING = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2.0)
@@ -61,7 +63,8 @@ def mapped_one_by_one(law, body, rows, accuracy):
     z, residual = np.empty(4), np.empty(4)
     for k in range(rows.belt_speed.size):
         z[:] = rows.state[:, k]
-        image = image_of(case_of(law, body, rows.belt_speed[k]), z, residual, accuracy)
+        case = case_of(law, body, rows.belt_speed[k])
+        image = paced_image(case, z, residual, noting(accuracy, track_of(0)))
         rows.residual[:, k] = residual
         rows.impulse[0, k], rows.impulse[1, k] = image.friction_impulse.real, image.friction_impulse.imag
         rows.closest[k], rows.arrived[k] = image.closest, 0.0 if image.stuck > 0.0 else 1.0
@@ -160,9 +163,9 @@ def difference_quotients(law, body, belt_speeds, states, shift, accuracy):
         for column in range(4):
             trial = states[i].copy()
             trial[column] += shift
-            image_of(case, trial, ahead, accuracy)
+            paced_image(case, trial, ahead, noting(accuracy, track_of(0)))
             trial[column] -= 2.0 * shift
-            image_of(case, trial, behind, accuracy)
+            paced_image(case, trial, behind, noting(accuracy, track_of(0)))
             for row in range(4):
                 identity = 1.0 if row == column else 0.0
                 matrices[i, row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + identity

@@ -189,9 +189,12 @@ def undriven(source: Source) -> Keys:
     return scene
 
 
-def creeping_scene(source: Source) -> tuple[Keys, Keys]:
+CREEPING = "line", "line", "plane", "prescribed", "undriven"
+
+
+def creeping_scene(source: Source, kinds: Sequence[str] = CREEPING) -> tuple[Keys, Keys]:
     """Any scene, driven or not, under rate-and-state friction, which creeps where others stick."""
-    mu, kind = log(source, 0.1, 1.0), source.among(("line", "line", "plane", "prescribed", "undriven"))
+    mu, kind = log(source, 0.1, 1.0), source.among(kinds)
     if kind == "undriven":
         scene = undriven(source)
     else:
@@ -224,6 +227,6 @@ def every_kind(draw: Any) -> tuple[Keys, Keys]:
 
 
 @st.composite
-def creeping(draw: Any) -> tuple[Keys, Keys]:
+def creeping(draw: Any, kinds: Sequence[str] = CREEPING) -> tuple[Keys, Keys]:
     """``creeping_scene`` for Hypothesis."""
-    return creeping_scene(_Hypothesis(draw))
+    return creeping_scene(_Hypothesis(draw), kinds)

@@ -28,7 +28,7 @@ from frictionlab.methods.shooting.undriven_cycle import (
     MOST_RETURNS,
     RETURN_DISTANCE,
     Cycle,
-    close_cycle,
+    close_shortest,
     is_there,
     nears,
     radius,
@@ -324,7 +324,7 @@ class Undriven:
             if apart < near or (back == 1 and len(returns) in TRIALS):
                 self._tried[back] = apart
                 guess = Return(last.state, last.turns - before.turns)
-                found = close_cycle(self._path, guess, self.tolerance)
+                found = close_shortest(self._path, guess, back, self.tolerance)
                 if found is not None and not any(is_there(other.orbit, found.state) for other in cycles):
                     cycles.append(found)
                     return found if found.neared(returns) else None

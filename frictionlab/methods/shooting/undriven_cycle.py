@@ -119,8 +119,22 @@ def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | 
             steps = 10.0 * accuracy / (found.turns * TURN)
             error = interpreted(stated_error)(changed, 0.5 * found.error, steps)
         if error <= tolerance or accuracy <= LEAST:
-            return found._replace(error=error)
+            # derivatives that closed it are those of the guess, or of a step on the way
+            return found._replace(error=error, matrix=_linearize(path, found).matrix)
         at, accuracy = found, max(accuracy / FINER, LEAST)
+
+
+def close_shortest(path: UndrivenPath, guess: Return, loops: int, tolerance: float) -> Cycle | None:
+    """The same of a guess that goes from largest deflection to largest deflection so many times: where the cycle
+    found is a shorter one over again, that."""
+    found = close_cycle(path, guess, tolerance)
+    if found is None:
+        return None
+    for parts in range(loops, 1, -1):
+        end = path.follow(found.state, found.turns / parts).end
+        if loops % parts == 0 and is_there(found.orbit, end):
+            return close_cycle(path, Return(found.state, found.turns / parts), tolerance)
+    return found
 
 
 def _newton(path: UndrivenPath, at: Cycle, linear: Linear, accuracy: float) -> tuple[Cycle | None, Linear]:

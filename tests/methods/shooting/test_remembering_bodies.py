@@ -241,6 +241,41 @@ def test_an_undriven_standard_linear_solid_slides_where_its_roots_decay(time: fl
     assert found[0].model != "undriven sliding" == found[1].model
 
 
+@pytest.mark.parametrize(
+    ("numbers", "speed", "turns", "mean"),
+    [
+        # the cycle of one swing, to which the start comes near, repels: it has a multiplier of -1.27
+        (
+            (0.0163264, 0.9474185, 4.7008915, 0.0689912, 0.3759744, 0.5505735, 15.1942704, 0.0247521),
+            1.5627169,
+            12.18564,
+            0.2435037,
+        ),
+        # three swings come back more nearly than one, on the way
+        (
+            (0.0218132, 2.0383511, 1.2876737, 0.0957784, 0.6096817, 0.5082522, 22.7973423, 0.0532792),
+            0.1771012,
+            8.46727,
+            0.4173390,
+        ),
+    ],
+)
+def test_an_undriven_cycle_is_one_that_attracts_once_round(
+    numbers: tuple[float, ...], speed: float, turns: float, mean: float
+) -> None:
+    """Periods and means of LSODA and DOP853 of scipy, of the last of 600 time units and more."""
+    damping, load, time, stiffness, fall, static, bristle, loss = numbers
+    body = fl.Body(relaxation=fl.Relaxation(stiffness=stiffness, time=time))
+    law = fl.LuGre(mu_kinetic=0.2, mu_static=static, stribeck_speed=fall, stiffness=bristle, damping=loss)
+    scene = fl.Scene(damping_ratio=damping, normal_load=load, belt_speed=speed, body=body)
+    found = fl.steady_state(scene, law, method="shooting")
+
+    assert found.status == "ok"
+    assert found.floquet < 1.0
+    assert 2.0 * math.pi * found.period == pytest.approx(turns, rel=1e-5)
+    assert found.mean_friction == pytest.approx(mean, abs=2e-6)
+
+
 def test_an_undriven_body_is_refused_where_its_memory_has_no_end() -> None:
     power = SQUEAKS.with_(body=fl.Body(fractional=fl.Fractional(coefficient=0.2, order=0.5)))
     at_rest = SQUEAKS.with_(belt_speed=0, initial={"x": 1, "velocity": 0})

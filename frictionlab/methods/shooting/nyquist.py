@@ -29,6 +29,8 @@ FIRST_TURNS, SHARPEST_TURN, TURN_HALVINGS = 33, 0.7, 10
 """Frequencies looked at first, and the turn [rad] from one to the next from which on more are between them."""
 AT_ONCE = 8
 """Frequencies, for memory."""
+AT_ONCE_IN_PRODUCTS = 200_000
+"""Products of numbers: OpenBLAS takes one thread for 262,144."""
 
 _Along = NDArray[np.float64]
 
@@ -104,18 +106,24 @@ def _friction_of_changes(tau: Floats, along: _Along, waves: ComplexValues, nu: F
     pushed = rate_v[:, None] * waves
     pushed = 0.5 * (pushed[1:] + pushed[:-1])
     decay = 0.5 * (rate_z[1:] + rate_z[:-1])
-    direct = (to_harmonics * friction_v) @ waves
+    direct = _product(to_harmonics * friction_v, waves)
     found = []
     for some in np.array_split(nu, 1 + len(nu) // AT_ONCE):
-        exponent = step[:, None] * (decay[:, None] - 1j * some)
+        exponent = step * (decay - 1j * some[:, None])
         kept = np.exp(exponent)
         near = np.abs(exponent) < SMALL_OFFSET
-        gained = step[:, None] * np.where(near, 1.0, np.expm1(exponent) / np.where(near, 1.0, exponent))
-        change = np.zeros((len(tau), len(some), waves.shape[1]), np.complex128)
-        left = np.ones((len(tau), len(some)), np.complex128)
+        gained = step * np.where(near, 1.0, np.expm1(exponent) / np.where(near, 1.0, exponent))
+        change = np.zeros((len(some), len(tau), waves.shape[1]), np.complex128)
         for m in range(len(step)):
-            change[m + 1] = kept[m, :, None] * change[m] + gained[m, :, None] * pushed[m]
-            left[m + 1] = kept[m] * left[m]
-        change += left[:, :, None] * (change[-1] / (1.0 - left[-1])[:, None])
-        found += [direct + (to_harmonics * friction_z) @ change[:, i] for i in range(len(some))]
-    return np.array(found)
+            change[:, m + 1] = kept[:, m, None] * change[:, m] + gained[:, m, None] * pushed[m]
+        left = np.cumprod(np.hstack([np.ones((len(some), 1)), kept]), axis=1)
+        change += left[:, :, None] * (change[:, -1] / (1.0 - left[:, -1:]))[:, None]
+        found.append(direct + _product(to_harmonics * friction_z, change))
+    return np.concatenate(found)
+
+
+def _product(left: ComplexValues, right: ComplexValues) -> Any:
+    """Of matrices, in parts so small that threads, which busy machines wait for, are not set off for them."""
+    many = max(1, AT_ONCE_IN_PRODUCTS // (left.shape[0] * right.shape[-1]))
+    parts = range(0, left.shape[1], many)
+    return sum(left[:, k : k + many] @ right[..., k : k + many, :] for k in parts)

@@ -29,8 +29,8 @@ FIRST_TURNS, SHARPEST_TURN, TURN_HALVINGS = 33, 0.7, 10
 """Frequencies looked at first, and the turn [rad] from one to the next from which on more are between them."""
 AT_ONCE = 8
 """Frequencies, for memory."""
-AT_ONCE_IN_PRODUCTS = 200_000
-"""Products of numbers: OpenBLAS takes one thread for 262,144."""
+AT_ONCE_IN_PRODUCTS = 60_000
+"""Products of numbers: for so few OpenBLAS takes one thread."""
 
 _Along = NDArray[np.float64]
 

@@ -50,6 +50,10 @@ LOOSE = {"damping_ratio": 0.0, "normal_load": 0.86, "belt_speed": -0.0828}
 FALLS = {"mu": 0.226, "a": 0.014, "b": 0.0386, "slip_length": 8.2e-4, "reference_speed": 0.0828}
 """Set off at rest, where slip is zero and friction has a slope of 1e6."""
 
+TOUCHES = {"belt_speed": -1.0, "slip": {"velocity_amplitude": 1.0, "frequency": 1.0, "waveform": "triangle"}}
+"""Slip comes to rest where a straight piece of it ends, and sets off there again."""
+EVEN = {"mu": 1.0, "a": 0.0111, "b": 0.0, "slip_length": 1.0, "reference_speed": 1.0}
+
 
 def answered(scene: dict[str, Any], law: dict[str, Any], tolerance: float) -> Any:
     law = {name: value for name, value in law.items() if name != "kind"}
@@ -61,6 +65,7 @@ def answered(scene: dict[str, Any], law: dict[str, Any], tolerance: float) -> An
 @example(drawn=(SHAKEN, LANDS))
 @example(drawn=(PRESSED, SETS_OFF))
 @example(drawn=(LOOSE, FALLS))
+@example(drawn=(TOUCHES, EVEN))
 def test_every_scene_has_a_mean_whose_error_covers_that_of_finer_maps(drawn: Any) -> None:
     rough, fine = (answered(*drawn, tolerance) for tolerance in (1e-5, 1e-8))
 

@@ -28,7 +28,7 @@ from frictionlab.dynamics.motion import (
     unbalanced_rate,
 )
 from frictionlab.dynamics.relaxing import elements_of, relaxing_rate
-from frictionlab.methods.periodic.maps.creep import SCALE
+from frictionlab.methods.periodic.maps.creep import SCALE, SLOW
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -119,8 +119,10 @@ _beside_rest = by_dimension(
 def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, like: Any) -> float:
     """The quotient of friction by slip on the scale of the slip; returns by how much that was moved."""
     n, swing = count_of(flow.law), swing_of(flow.body) + abs(flow.belt_speed)
-    slowest = NUDGE * work.creep[SCALE] if work.creep[SCALE] > 0.0 else 1e-30 * swing
-    least, shift = LOST * swing, max(NUDGE * length(w), slowest)
+    scale, slow, least = work.creep[SCALE], work.creep[SLOW], LOST * swing
+    # a slip that is given is at rest for a moment alone
+    slowest = NUDGE * (scale if scale > 0.0 else slow) if slow > 0.0 else least
+    shift = max(NUDGE * length(w), slowest)
     while True:
         ahead = friction_in_mode(flow.law, work, w + shift * unit(column, like))
         behind = friction_in_mode(flow.law, work, w - shift * unit(column, like))

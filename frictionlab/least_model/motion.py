@@ -16,14 +16,18 @@ from frictionlab.least_model.lesser import CannotGo, LesserModel, MotionWay, Tak
 from frictionlab.methods.reduced.common import line_refusal, steadied, steadied_all
 from frictionlab.methods.reduced.reversals import DrivenLine, exact_response, reversals_at
 from frictionlab.quantities import Floats
+from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import MOST_TERMS, Form, Term
+from frictionlab.theory.free_slip import friction_free_slip
 from frictionlab.theory.linear import friction_free_response, friction_free_velocity, less
 from frictionlab.theory.piecewise import Piecewise, piecewise
 
 UNDRIVEN = "nothing shakes the body: without friction it does not move"
 BENT_MOTION = "the friction-free motion of a body that is not linear has no closed form"
+UNTOLD_MOTION = "no closed form tells how a body that remembers moves under these loads"
 UNBOUNDED_MOTION = "the friction-free motion is unbounded: undamped resonance"
 WITH_SPEED = "the friction that moves the body under this normal load changes with belt speed"
 NO_WAVEFORM = "the friction-free motion is no sum of harmonics: no waveform of a prescribed slip says so"
@@ -77,25 +81,37 @@ def _method(name: str, **parameters: Any) -> MotionWay:
 def _prescribed(model: LesserModel) -> Scene:
     """The scene of the friction-free motion as a prescribed slip. Raises CannotGo."""
     scene, law = model.scene, model.law
-    if scene.body_terms:
+    if scene.bends:
         raise CannotGo(BENT_MOTION)
     normal = scene.normal_load_variation
     if normal is not None and not law.constant_sliding_friction():
         raise CannotGo(WITH_SPEED)
-    free = friction_free_response(scene, law, 1)
-    if free is None:
-        raise CannotGo(UNBOUNDED_MOTION)
-    signals = scene.signals()
-    along, across = (
-        _oscillation(less(own, piecewise(belt, signals.edges())), scene.frequency)
-        for own, belt in zip(free, signals.belt, strict=True)
-    )
+    along, across = (_oscillation(each, scene.frequency) for each in _slip_without_friction(scene, law))
     changes: dict[str, Any] = {"slip": {**along, "frequency": scene.frequency}}
     if scene.planar:
         changes["transverse_slip"] = across
     if normal is not None:
         changes["normal_load_variation"] = normal.model_copy(update={"frequency": None})
     return Scene(belt_speed=scene.belt_speed, normal_load=scene.normal_load, **changes)
+
+
+def _slip_without_friction(scene: Scene, law: FrictionLaw) -> tuple[Piecewise, Piecewise]:
+    """Along the belt and across it, on a belt whose mean velocity is zero. Raises CannotGo."""
+    free, signals = friction_free_response(scene, law, 1), scene.signals()
+    if free is None:
+        raise CannotGo(UNBOUNDED_MOTION)
+    along, across = (
+        less(own, piecewise(belt, signals.edges())) for own, belt in zip(free, signals.belt, strict=True)
+    )
+    if not scene.remembers:
+        return along, across
+    body, load = linear_body(scene), signals.load[0]
+    if signals.normal_load != Signal() or load.reaches_beyond(body.known_to):
+        raise CannotGo(UNTOLD_MOTION)
+    slip = friction_free_slip(body, load, signals.belt[0], signals.period)
+    if len(slip.corners):
+        raise CannotGo(NO_WAVEFORM)
+    return piecewise(slip.waves, signals.edges()), across
 
 
 def _oscillation(velocity: Piecewise, frequency: float) -> dict[str, Any]:

@@ -132,6 +132,18 @@ def test_bristles_on_the_friction_free_motion_have_their_slip_prescribed() -> No
     assert left.scene.motion().transverse_velocity == pytest.approx(across)
 
 
+def test_the_friction_free_motion_of_a_body_that_remembers_is_that_of_its_receptance() -> None:
+    body = {"relaxation": {"stiffness": 0.3, "time": 0.8}}
+    left = friction_free_of(model(drive={"amplitude": 3, "frequency": 2, "phase": 10}, body=body))
+
+    assert left is not None
+    stiffness = 1 - 4 + 0.4j + 0.3 * 2j / (2j + 1 / 0.8)
+    along = 3 * cmath.exp(1j * cmath.pi / 18) * 2j / stiffness
+    assert left.scene.motion().velocity == pytest.approx(along)
+    with pytest.raises(CannotGo, match="no sum of harmonics"):
+        friction_free_of(model(drive={"amplitude": 1, "frequency": 2, "waveform": "square"}, body=body))
+
+
 def test_what_has_no_friction_free_motion_says_so() -> None:
     with pytest.raises(CannotGo, match="nothing shakes"):
         friction_free_of(model())

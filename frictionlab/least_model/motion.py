@@ -16,13 +16,11 @@ from frictionlab.least_model.lesser import CannotGo, LesserModel, MotionWay, Tak
 from frictionlab.methods.reduced.common import line_refusal, steadied, steadied_all
 from frictionlab.methods.reduced.reversals import DrivenLine, exact_response, reversals_at
 from frictionlab.quantities import Floats
-from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import MOST_TERMS, Form, Term
-from frictionlab.theory.free_slip import friction_free_slip
-from frictionlab.theory.linear import friction_free_response, friction_free_velocity, less
+from frictionlab.theory.linear import friction_free_response, friction_free_velocity, less, slip_of_memory
 from frictionlab.theory.piecewise import Piecewise, piecewise
 
 UNDRIVEN = "nothing shakes the body: without friction it does not move"
@@ -105,10 +103,9 @@ def _slip_without_friction(scene: Scene, law: FrictionLaw) -> tuple[Piecewise, P
     )
     if not scene.remembers:
         return along, across
-    body, load = linear_body(scene), signals.load[0]
-    if signals.normal_load != Signal() or load.reaches_beyond(body.known_to):
+    slip = slip_of_memory(scene, 0.0)
+    if slip is None or signals.normal_load != Signal():
         raise CannotGo(UNTOLD_MOTION)
-    slip = friction_free_slip(body, load, signals.belt[0], signals.period)
     if len(slip.corners):
         raise CannotGo(NO_WAVEFORM)
     return piecewise(slip.waves, signals.edges()), across

@@ -12,7 +12,7 @@ from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
-from frictionlab.theory.free_slip import friction_free_slip
+from frictionlab.theory.free_slip import FreeSlip, friction_free_slip
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
 
 _SINGULAR = 64.0 * EPSILON
@@ -92,11 +92,8 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
     """Of its x1' minus the belt's vibration along x1, over the period of the scene; infinite without a bound."""
     signals = scene.signals()
     if scene.remembers:
-        body, load = linear_body(scene), signals.load[0].plus(signals.normal_load.scaled(coefficient))
-        if not math.isfinite(body.mass) and load.reaches_beyond(body.known_to):
-            return math.nan
-        slip_of_body = friction_free_slip(body, load, signals.belt[0], signals.period)
-        low, high = slip_of_body.extremes(signals.period)
+        found = slip_of_memory(scene, coefficient)
+        low, high = found.extremes(signals.period) if found is not None else (math.nan, math.nan)
         return high if scene.belt_speed >= 0.0 else -low
     slip = piecewise(signals.belt[0], signals.edges())
     if scene.degrees_of_freedom > 0:
@@ -105,6 +102,16 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
             return math.inf
         slip = less(response, slip)
     return (slip if scene.belt_speed >= 0.0 else slip.negative()).maximum()
+
+
+def slip_of_memory(scene: Scene, coefficient: float) -> FreeSlip | None:
+    """The same of a body that remembers; None where its table does not tell. coefficient: of the friction by which a
+    varying normal load pushes it."""
+    signals, body = scene.signals(), linear_body(scene)
+    load = signals.load[0].plus(signals.normal_load.scaled(coefficient))
+    if not math.isfinite(body.mass) and load.reaches_beyond(body.known_to):
+        return None
+    return friction_free_slip(body, load, signals.belt[0], signals.period)
 
 
 def less(first: Piecewise, second: Piecewise) -> Piecewise:

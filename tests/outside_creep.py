@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 STRAIGHT = 1e-9
 TURN = 2.0 * math.pi
 REPEATS = 2e-9
-"""By how much the means of three periods in a row differ, where a motion is taken to repeat."""
+"""By how much the mean of a period is still to change, where a motion is taken to repeat."""
 
 
 class Unsettled(ArithmeticError):
@@ -117,9 +117,17 @@ class Creep:
             before = self.state[:-1].copy()
             means.append(self.period())
             still = np.abs(self.state[:-1] - before).max() < 1e-5 * (1.0 + np.abs(before).max())
-            if still and len(means) > 2 and np.ptp(means[-3:]) < REPEATS:
+            if still and _left(means) < REPEATS:
                 return means[-1]
         raise Unsettled(f"not repeated within {periods} periods")
+
+
+def _left(means: list[float]) -> float:
+    """As the last three go on to shrink."""
+    if len(means) < 3:
+        return math.inf
+    before, last = np.abs(np.diff(means[-3:]))
+    return last if last < 0.1 * REPEATS else last * last / (before - last) if last < before else math.inf
 
 
 def _nothing(scene: dict[str, Any]) -> Forcing:

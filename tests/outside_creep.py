@@ -123,8 +123,8 @@ class Creep:
 
 
 def _left(means: list[float]) -> float:
-    """As the last three go on to shrink."""
-    if len(means) < 3:
+    """As the last three, which differ by no more than that themselves, go on to shrink."""
+    if len(means) < 3 or np.ptp(means[-3:]) > REPEATS:
         return math.inf
     before, last = np.abs(np.diff(means[-3:]))
     return last if last < 0.1 * REPEATS else last * last / (before - last) if last < before else math.inf

@@ -18,14 +18,13 @@ from frictionlab.methods.reduced.reversals import DrivenLine, exact_response, re
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
-from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import MOST_TERMS, Form, Term
-from frictionlab.theory.linear import friction_free_response, friction_free_velocity, less, slip_of_memory
+from frictionlab.theory.linear import friction_free_response, friction_free_velocity, less
 from frictionlab.theory.piecewise import Piecewise, piecewise
 
 UNDRIVEN = "nothing shakes the body: without friction it does not move"
 BENT_MOTION = "the friction-free motion of a body that is not linear has no closed form"
-UNTOLD_MOTION = "no closed form tells how a body that remembers moves under these loads"
+UNTOLD_MOTION = "the table of the body does not tell how it moves without friction: its load reaches beyond"
 UNBOUNDED_MOTION = "the friction-free motion is unbounded: undamped resonance"
 WITH_SPEED = "the friction that moves the body under this normal load changes with belt speed"
 NO_WAVEFORM = "the friction-free motion is no sum of harmonics: no waveform of a prescribed slip says so"
@@ -95,20 +94,18 @@ def _prescribed(model: LesserModel) -> Scene:
 
 def _slip_without_friction(scene: Scene, law: FrictionLaw) -> tuple[Piecewise, Piecewise]:
     """Along the belt and across it, on a belt whose mean velocity is zero. Raises CannotGo."""
-    free, signals = friction_free_response(scene, law, 1), scene.signals()
+    signals = scene.signals()
+    if scene.remembers and (signals.load[0].pieces or signals.normal_load.pieces):
+        raise CannotGo(NO_WAVEFORM)
+    if scene.remembers and math.isnan(friction_free_velocity(scene, law)):
+        raise CannotGo(UNTOLD_MOTION)
+    free = friction_free_response(scene, law, 1)
     if free is None:
         raise CannotGo(UNBOUNDED_MOTION)
     along, across = (
         less(own, piecewise(belt, signals.edges())) for own, belt in zip(free, signals.belt, strict=True)
     )
-    if not scene.remembers:
-        return along, across
-    slip = slip_of_memory(scene, 0.0)
-    if slip is None or signals.normal_load != Signal():
-        raise CannotGo(UNTOLD_MOTION)
-    if len(slip.corners):
-        raise CannotGo(NO_WAVEFORM)
-    return piecewise(slip.waves, signals.edges()), across
+    return along, across
 
 
 def _oscillation(velocity: Piecewise, frequency: float) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
-from frictionlab.theory.free_slip import FreeSlip, friction_free_slip
+from frictionlab.theory.free_slip import answered, friction_free_slip
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
 
 _SINGULAR = 64.0 * EPSILON
@@ -62,7 +62,7 @@ def friction_free_response(
 ) -> tuple[Piecewise, Piecewise] | None:
     """That motion: x1 and x2 themselves, or for order 1 their velocities; None where one has no bound.
 
-    Raises ValueError as ``friction_free_velocity``.
+    Raises ValueError as ``friction_free_velocity``, and of a body that remembers under loads that have corners.
     """
     found = _response(scene, _coefficient(scene, law), order)
     return None if found[0] is None or found[1] is None else (found[0], found[1])
@@ -81,19 +81,28 @@ def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise |
     mass, signals = scene.mass(), scene.signals()
     edges = signals.edges()
     push = signals.load[0].plus(signals.normal_load.scaled(coefficient))
-    along, across = (
-        LinearOscillator(mass.damping, mass.stiffness),
-        LinearOscillator(mass.transverse_damping, mass.transverse_stiffness),
-    )
-    return along.response(push, edges, order), across.response(signals.load[1], edges, order)
+    across = LinearOscillator(mass.transverse_damping, mass.transverse_stiffness)
+    if scene.remembers:
+        if push.pieces:
+            raise ValueError("friction_free_response: a body that remembers answers sums of sines alone")
+        body = linear_body(scene)
+        along: Piecewise | None = piecewise(
+            Signal(tuple(answered(body, each, order) for each in push.waves)), edges
+        )
+    else:
+        along = LinearOscillator(mass.damping, mass.stiffness).response(push, edges, order)
+    return along, across.response(signals.load[1], edges, order)
 
 
 def _largest_slip(scene: Scene, coefficient: float) -> float:
     """Of its x1' minus the belt's vibration along x1, over the period of the scene; infinite without a bound."""
     signals = scene.signals()
     if scene.remembers:
-        found = slip_of_memory(scene, coefficient)
-        low, high = found.extremes(signals.period) if found is not None else (math.nan, math.nan)
+        body, load = linear_body(scene), signals.load[0].plus(signals.normal_load.scaled(coefficient))
+        if not math.isfinite(body.mass) and load.reaches_beyond(body.known_to):
+            return math.nan
+        slip_of_body = friction_free_slip(body, load, signals.belt[0], signals.period)
+        low, high = slip_of_body.extremes(signals.period)
         return high if scene.belt_speed >= 0.0 else -low
     slip = piecewise(signals.belt[0], signals.edges())
     if scene.degrees_of_freedom > 0:
@@ -102,16 +111,6 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
             return math.inf
         slip = less(response, slip)
     return (slip if scene.belt_speed >= 0.0 else slip.negative()).maximum()
-
-
-def slip_of_memory(scene: Scene, coefficient: float) -> FreeSlip | None:
-    """The same of a body that remembers; None where its table does not tell. coefficient: of the friction by which a
-    varying normal load pushes it."""
-    signals, body = scene.signals(), linear_body(scene)
-    load = signals.load[0].plus(signals.normal_load.scaled(coefficient))
-    if not math.isfinite(body.mass) and load.reaches_beyond(body.known_to):
-        return None
-    return friction_free_slip(body, load, signals.belt[0], signals.period)
 
 
 def less(first: Piecewise, second: Piecewise) -> Piecewise:

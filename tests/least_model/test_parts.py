@@ -140,6 +140,10 @@ def test_the_friction_free_motion_of_a_body_that_remembers_is_that_of_its_recept
     stiffness = 1 - 4 + 0.4j + 0.3 * 2j / (2j + 1 / 0.8)
     along = 3 * cmath.exp(1j * cmath.pi / 18) * 2j / stiffness
     assert left.scene.motion().velocity == pytest.approx(along)
+    # what relaxes damps the resonance of the spring and mass beside it
+    left = friction_free_of(model(drive={"amplitude": 3, "frequency": 1}, damping_ratio=0, body=body))
+    assert left is not None
+    assert left.scene.motion().velocity == pytest.approx(3 * (1j + 1 / 0.8) / 0.3)
     with pytest.raises(CannotGo, match="no sum of harmonics"):
         friction_free_of(model(drive={"amplitude": 1, "frequency": 2, "waveform": "square"}, body=body))
 

@@ -28,8 +28,9 @@ import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
-from frictionlab.compile import collection, counting  # noqa: F401  # one listens, one replaces a search
 from frictionlab.compile.code import FOREIGN, names_used
+from frictionlab.compile.collection import pause_collection
+from frictionlab.compile.counting import count_in_arrays_alone
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.dispatch import KnownLaw, law_of_numbers
 from frictionlab.compile.kept import KeptEntry
@@ -40,6 +41,8 @@ from frictionlab.laws.base import FrictionLaw
 # numba links compiled functions by name and types, and tells those of one name apart by a number that every process
 # counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
 FunctionIdentity._unique_ids = itertools.count(secrets.randbits(60))
+pause_collection()
+count_in_arrays_alone()
 _typeof: Any = numba.typeof
 _config: Any = numba.config
 

@@ -33,4 +33,6 @@ class _PausesCollection(_event.Listener):  # type: ignore[misc]  # numba has no 
             gc.enable()
 
 
-_event.register("numba:compile", _PausesCollection())
+def pause_collection() -> None:
+    """From now on."""
+    _event.register("numba:compile", _PausesCollection())

@@ -7,7 +7,9 @@ import numba.extending
 import pytest
 from numba.core.errors import TypingError
 
-from frictionlab.compile import collection  # noqa: F401  # listens
+from frictionlab.compile.collection import pause_collection
+
+pause_collection()
 
 
 def seen_while_compiling(fails: bool = False) -> list[bool]:

@@ -12,6 +12,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from profiles import deep
 
 import frictionlab
 from frictionlab import registry
@@ -122,6 +123,7 @@ OUTSIDE = {
         "hypothesis": "testing",
         "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions
         "llvmlite": "compile",
+        "filelock": "compile",
         "pint": "units.text",
         "flint": "methods.exact.proof",
         "ruamel": "study runner",
@@ -208,6 +210,7 @@ def test_every_arrow_leads_down() -> None:
         assert [room for room in below if ROOMS.index(room) >= ROOMS.index(above)] == [], above
 
 
+@deep("reads all sources")
 def test_no_files_import_each_other_in_a_circle() -> None:
     graph = {module: {*_inside(path)} - {module} for module, path in MODULES.items()}
 
@@ -216,6 +219,7 @@ def test_no_files_import_each_other_in_a_circle() -> None:
     )  # else CycleError, with the circle
 
 
+@deep("reads all sources")
 def test_every_arrow_is_used() -> None:
     used: dict[str, set[str]] = {room: set() for room in ROOMS}
     for module, path in MODULES.items():
@@ -284,6 +288,7 @@ def test_importing_the_package_brings_in_nothing_heavy() -> None:
 HEAVY = "hypothesis", "matplotlib", "pandas", "pint", "pyarrow"
 
 
+@deep("processes")
 def test_tables_figures_and_drawn_examples_are_imported_where_they_are_needed() -> None:
     """A fresh interpreter: a steady state needs no table, a study no figure, and neither needs hypothesis."""
     steps = {

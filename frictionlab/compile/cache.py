@@ -130,6 +130,13 @@ def _entry(kernel: Any, law: KnownLaw | None, fields: tuple[str, ...]) -> tuple[
     part = kernel if "no_cpython_wrapper" in kernel.targetoptions else inner(kernel.py_func)
     entry = _module(name, source, kernel=part, njit=njit).entry
     entry._cache = KeptEntry(name)
+    compile_entry = entry.compile
+
+    def compile_once(signature: Any) -> Any:
+        with entry._cache.compiled_once(signature, entry.targetctx.codegen()):
+            return compile_entry(signature)
+
+    entry.compile = compile_once
     return entry, numbers
 
 

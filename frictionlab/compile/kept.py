@@ -21,6 +21,7 @@ import numba.core.caching
 import numba.core.compiler
 import numba.core.serialize
 import numba.core.types
+from filelock import FileLock
 
 from frictionlab.compile.notice import compiled_here, mark_cache_miss
 
@@ -103,6 +104,29 @@ class KeptEntry(_Cache):  # type: ignore[misc]
         folder = cache_folder()
         about = repr((_about(signature), codegen.magic_tuple()))
         return folder and folder / f"{self._name}_{hashlib.sha256(about.encode()).hexdigest()[:16]}{SUFFIX}"
+
+    @contextlib.contextmanager
+    def compiled_once(self, signature: Any, codegen: Any) -> Iterator[None]:
+        """Keep other processes and threads from compiling this entry: they wait, then read what is kept.
+
+        Where no file can be locked, each compiles its own.
+        """
+        path = self._path(signature, codegen)
+        if path is None or path.exists():
+            yield
+            return
+        mark_cache_miss()
+        file = path.with_suffix(".lock")
+        lock = FileLock(file)
+        with contextlib.suppress(OSError, NotImplementedError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            lock.acquire()
+        try:
+            yield
+        finally:
+            with contextlib.suppress(OSError):
+                file.unlink(missing_ok=True)  # whoever waits for it holds it open
+            lock.release()
 
     def has(self, signature: Any, codegen: Any) -> bool:
         """Whether there is a file for this signature, sound or not."""

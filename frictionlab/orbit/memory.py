@@ -90,8 +90,10 @@ def followed(law: FrictionLaw, tau: Floats, contact: Contact) -> Numbers | None:
 
 
 def _in_sliding(law: FrictionLaw, contact: Contact) -> Numbers:
-    """As in steady sliding at the fastest slip there is."""
+    """Memories of steady sliding at the fastest slip there is; none where nothing slips."""
     w = contact.at(np.unravel_index(np.abs(contact.slip).argmax(), contact.slip.shape))[0]
+    if w == 0.0:
+        return np.zeros(law.count(), np.complex128)
     if isinstance(law, MemoryLaw):
         return np.array([law.steady(w, k) for k in range(law.count())], np.complex128)
     return np.array([law.presliding() * w / abs(w)], np.complex128)

@@ -7,11 +7,14 @@ import os
 import pickle
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from contextlib import contextmanager
 from pathlib import Path
 
+import numba
 import pytest
+from profiles import deep
 
 from frictionlab.compile import cache, kept
 from frictionlab.compile.cache import compiled
@@ -188,6 +191,26 @@ def test_on_a_full_disk_nothing_half_written_is_left(folder, capfd):
     assert list(folder.iterdir()) == []
 
 
+def test_an_entry_that_another_compiles_is_waited_for_and_read(folder, monkeypatch):
+    """The other ends without keeping anything at first: then the one that waits compiles it."""
+    entry = compiled(difference).entry
+    kinds, names = (numba.float64, numba.float64), []
+    monkeypatch.setattr(kept, "compiled_here", names)
+    with entry._cache.compiled_once(kinds, entry.targetctx.codegen()):
+        waiting = threading.Thread(target=first_call)
+        waiting.start()
+        waiting.join(0.3)
+        assert waiting.is_alive()
+        assert names == []
+    waiting.join()
+    assert len(names) == 1
+
+    with entry._cache.compiled_once(kinds, entry.targetctx.codegen()):  # it is kept: nobody waits
+        assert first_call() == 3.0
+    assert len(names) == 1
+    assert [file.suffix for file in folder.iterdir()] == [".kernel"]
+
+
 def test_what_a_killed_process_did_not_finish_is_removed_by_a_later_one(folder, file):
     left, fresh = folder / "left.tmp", folder / "fresh.tmp"
     left.touch()
@@ -209,6 +232,7 @@ for law in (fl.Coulomb(mu=0.4), fl.LuGre(mu_kinetic=0.4, stiffness=5.0)):
 """
 
 
+@deep("seconds of Python")
 def test_where_numba_compiles_nothing_python_finds_the_same_numbers():
     def answers(disabled: str) -> list[list[str]]:
         environment = {**os.environ, "NUMBA_DISABLE_JIT": disabled}

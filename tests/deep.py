@@ -110,7 +110,7 @@ def _seconds(item: pytest.Item, known: dict[str, float]) -> float:
     file = item.nodeid.partition("::")[0]
     if file in known:
         return max(known[file], 1e-3)
-    if any("deep profile" in mark.kwargs.get("reason", "") for mark in item.iter_markers("skipif")):
+    if item.get_closest_marker("deep") is not None:
         return MARKED
     return DRAWN if getattr(getattr(item, "obj", None), "is_hypothesis_test", False) else OTHER
 

@@ -14,10 +14,8 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -71,30 +69,26 @@ def _command(pid: int) -> str:
         return ""
 
 
-@contextmanager
-def killing(alive: Callable[[], list[int]], kills: int, draw: random.Random) -> Iterator[list[int]]:
-    """Meanwhile, one of these processes after another is killed, until that is done so often."""
-    done, over = list[int](), threading.Event()
+class Killer:
+    """Kills a process that is alive, so often, at random shares of the points of a run."""
 
-    def kill() -> None:
-        while len(done) < kills and not over.wait(draw.uniform(0.5, 2.0)):
-            if found := alive():
-                os.kill(victim := draw.choice(found), signal.SIGKILL)
-                done.append(victim)
+    def __init__(self, alive: Callable[[], list[int]], kills: int, draw: random.Random) -> None:
+        self.alive, self.draw, self.killed = alive, draw, 0
+        self.shares = sorted(draw.uniform(0.0, 0.9) for _ in range(kills))
 
-    thread = threading.Thread(target=kill)
-    thread.start()
-    try:
-        yield done
-    finally:
-        over.set()
-        thread.join()
+    def __call__(self, points: int, of: int, _left: float) -> None:
+        """Kill one where its share is reached."""
+        due = self.killed < len(self.shares) and points > self.shares[self.killed] * of
+        if due and (found := self.alive()):
+            os.kill(self.draw.choice(found), signal.SIGKILL)
+            self.killed += 1
 
 
 def by_processes(given: dict[str, Any], out: Path, kills: int, draw: random.Random) -> tuple[Any, int]:
     """The table found by two processes, and how many were killed."""
-    with workforce.processes(2) as force, killing(workers_of_this_process, kills, draw) as killed:
-        return fl.run(given, out=out, executor=force).table, len(killed)
+    killer = Killer(workers_of_this_process, kills, draw)
+    with workforce.processes(2) as force:
+        return fl.run(given, out=out, executor=force, progress=killer).table, killer.killed
 
 
 def by_cluster(given: dict[str, Any], out: Path, kills: int, draw: random.Random) -> tuple[Any, int]:
@@ -108,9 +102,9 @@ def by_cluster(given: dict[str, Any], out: Path, kills: int, draw: random.Random
                 nanny.process.pid for nanny in cluster.workers.values() if nanny.process and nanny.process.pid
             ]
 
-        address = cluster.scheduler_address
-        with workforce.cluster(address) as force, killing(alive, kills, draw) as killed:
-            return fl.run(given, out=out, executor=force).table, len(killed)
+        killer = Killer(alive, kills, draw)
+        with workforce.cluster(cluster.scheduler_address) as force:
+            return fl.run(given, out=out, executor=force, progress=killer).table, killer.killed
 
 
 def by_parts(given: dict[str, Any], out: Path, kills: int, draw: random.Random) -> tuple[Any, int]:
@@ -120,16 +114,18 @@ def by_parts(given: dict[str, Any], out: Path, kills: int, draw: random.Random) 
     file = out.parent / "study.yaml"
     file.write_text(yaml_text(given))
     parts = PARTS[points_of(given) >= MANY_POINTS]
-    order, killed = list(range(1, parts + 1)), 0
+    order, killed, taken = list(range(1, parts + 1)), 0, 0.0
     draw.shuffle(order)
     for part in order:
         command = [*COMMAND, "run", str(file), "-o", str(out), "--part", f"{part}/{parts}"]
-        if killed < kills:
+        if killed < kills and taken:
             process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-            time.sleep(draw.uniform(0.8, 1.6))
+            time.sleep(draw.uniform(0.2, 0.9) * taken)
             process.kill()
             killed += process.wait() < 0
+        before = time.perf_counter()
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        taken = time.perf_counter() - before
     done = fl.run(file, out=out)
     assert done.computed == 0
     return done.table, killed

@@ -5,15 +5,18 @@ from __future__ import annotations
 import re
 
 import architecture
+from profiles import deep
 from structure import arrows, floors, tree_of
 
 PAGE = (architecture.PROJECT / "docs" / "architecture.md").read_text()
 
 
+@deep("reads all sources")
 def test_the_drawing_is_that_of_the_imports() -> None:
     assert architecture.PICTURE.read_text() == architecture.picture(), "run: python tests/architecture.py"
 
 
+@deep("reads all sources")
 def test_every_room_has_its_line() -> None:
     rooms = set(arrows(tree_of(architecture.PROJECT)))
     table = PAGE.partition("| room |")[2].partition("\n\n")[0]
@@ -30,6 +33,7 @@ def test_every_file_named_is_there() -> None:
     assert [each for each in places if not any(list(root.glob(each.rstrip("/"))) for root in roots)] == []
 
 
+@deep("reads all sources")
 def test_a_room_stands_above_all_it_imports() -> None:
     drawn = arrows(tree_of(architecture.PROJECT))
     height = floors(drawn)

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import some
 from pydantic import BaseModel
 from scenes_of_every_kind import SCENES
 from strategies import LAWS
@@ -53,6 +54,7 @@ def again(shown: object) -> Any:
     return eval(repr(shown), dict(NAMES))
 
 
+@some(20, "scenes of every kind")
 @pytest.mark.parametrize("name", SCENES)
 def test_what_a_scene_and_its_law_show_makes_them_again(name: str) -> None:
     keys, law = SCENES[name]

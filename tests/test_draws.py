@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from profiles import deep
 
 DEFAULT = settings.get_profile("default")
 
@@ -24,11 +25,13 @@ def drawn() -> list[Any]:
     return examples
 
 
+@deep("hundreds of draws")
 def test_two_runs_draw_the_same():
     assert DEFAULT.derandomize
     assert drawn() == drawn()
 
 
+@deep("hundreds of draws")
 def test_a_module_loaded_in_between_changes_no_draw(tmp_path, monkeypatch: pytest.MonkeyPatch):
     before = drawn()
     (tmp_path / "odd_numbers.py").write_text("SPEED = 1234.56789\nCOUNT = 987654\nNAME = 'unheard of'\n")

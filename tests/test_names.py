@@ -6,6 +6,8 @@ import ast
 from collections import defaultdict
 from pathlib import Path
 
+from profiles import deep
+
 import frictionlab
 
 PACKAGE = Path(frictionlab.__file__).parent
@@ -39,6 +41,7 @@ def _doubles() -> dict[str, list[str]]:
     return {name: where for name, where in homes.items() if len(where) > 1 and name not in ROLES}
 
 
+@deep("reads all sources")
 def test_a_name_has_one_meaning() -> None:
     settled = {
         name: [home for home in homes if home.partition(".")[0] not in OPEN]
@@ -48,6 +51,7 @@ def test_a_name_has_one_meaning() -> None:
     assert {name: homes for name, homes in settled.items() if len(homes) > 1} == {}
 
 
+@deep("reads all sources")
 def test_names_with_two_meanings_get_fewer_in_the_rooms_of_kernels() -> None:
     assert len(_doubles()) <= MOST_OPEN
 

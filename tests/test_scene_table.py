@@ -6,7 +6,7 @@ import itertools
 
 import pytest
 import scene_table
-from profiles import DEEP
+from profiles import deep
 from scene_table import LAWS, METHODS, PAGE, SCENES, law_of, refusal
 
 import frictionlab as fl
@@ -31,7 +31,7 @@ def is_answered(law: str, state: fl.SteadyState) -> bool:
     return state.status in ANSWERS or too_stiff
 
 
-@pytest.mark.skipif(not DEEP, reason="most kernels there are: the deep profile")
+@deep("most kernels there are")
 @pytest.mark.parametrize("scene", SCENES)
 def test_what_is_said_to_be_taken_is_solved_and_methods_agree(scene: str) -> None:
     for law in LAWS:

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from profiles import DEEP
+from profiles import DEEP, deep
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
@@ -25,6 +25,13 @@ SLOW = (
     "prescribed_curve_shapes_lugre",
     "popov_contact_stiffness",
     "stick_slip_smoothed_friction",
+    "fig7b_harmonic_balance_off_resonance",
+    "popov_normal_phase",
+    "prescribed_curve_shapes_dahl",
+    "prescribed_elastic_range",
+    "prescribed_force_sign_dahl",
+    "prescribed_longitudinal_softness",
+    "prescribed_shape_measures_dahl",
 )
 """Studies with kernels that no other test needs, or of many steps."""
 
@@ -42,6 +49,7 @@ def is_for_the_deep_profile(study: Path) -> bool:
     return long and bristles
 
 
+@deep("reads all studies")
 def test_a_study_has_a_short_name_its_claim_in_the_title_its_source_and_why_it_expects_what() -> None:
     assert STUDIES
     for study in STUDIES:

@@ -91,7 +91,8 @@ def test_the_call_from_python_gives_a_curve_that_ends_at_mu(
     assert isinstance(table, pd.DataFrame)
     assert list(table["status"]) == ["ok"] * 12
     assert table["mean_friction"].iloc[-1] == pytest.approx(0.4, abs=1e-6)
-    assert table["mean_friction"].is_monotonic_increasing
+    errors = table["error"] + table["error"].shift()
+    assert (table["mean_friction"].diff() >= -errors)[1:].all()
     assert "mean_friction" in capsys.readouterr().out
 
 

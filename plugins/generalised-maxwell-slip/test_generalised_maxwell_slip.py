@@ -37,6 +37,7 @@ def _marked(row: dict[str, str]) -> object:
     return pytest.param(row, id=row["name"], marks=() if quick else compiling)
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("row", [_marked(row) for row in ROWS])
 def test_the_mean_is_that_of_an_integration_from_event_to_event(row):
     law = GeneralisedMaxwellSlip(**json.loads(row["law"]))
@@ -66,7 +67,8 @@ def test_the_reference_of_constant_friction_is_maxwell_slip_along_a_line(name):
 
     found = fl.steady_state(fl.Scene(**json.loads(row["scene"])), same, "shooting", tolerance=TOLERANCE)
 
-    assert abs(found.mean_friction - float(row["mean_friction"])) <= found.error <= TOLERANCE
+    off = abs(found.mean_friction - float(row["mean_friction"]))
+    assert off - float(row["accuracy"]) <= found.error <= TOLERANCE
 
 
 def test_equal_elements_of_constant_friction_are_jenkins_along_a_line():

@@ -1,9 +1,11 @@
 """The law passes what any law must: the whole battery, some minutes."""
 
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
+from profiles import deep
 
 from frictionlab.testing import check_law
 
 
+@deep("the whole battery takes minutes")
 def test_the_law_conforms():
     check_law(GeneralisedMaxwellSlip)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 
 import frictionlab as fl
 
@@ -86,6 +87,7 @@ def test_under_a_given_slip_the_means_of_its_elements_add_up():
     assert abs(state.mean_friction - mean) <= state.error + 1e-13
 
 
+@deep("kernels of its own")
 def test_its_study_keeps_its_promises():
     done = fl.run(Path(__file__).parent / "study.yaml")
 

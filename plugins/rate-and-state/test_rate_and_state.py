@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import deep
 from rate_and_state import RateAndState
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -165,7 +166,7 @@ def test_quick_vibration_lowers_the_mean_as_the_averaged_law_says(law, belt_spee
     assert mean == pytest.approx(0.6 + law.a * logarithm - law.b * renewal, abs=1e-6)
 
 
-@pytest.mark.parametrize("study", ["study", "creep"])
+@pytest.mark.parametrize("study", ["study", pytest.param("creep", marks=deep("seconds of creep"))])
 def test_its_studies_keep_their_promises(study):
     done = fl.run(Path(__file__).parent / f"{study}.yaml")
 

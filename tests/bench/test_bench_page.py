@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from pages import Page
+from profiles import deep
 
 from frictionlab import bench, cli
 from frictionlab.bench import account
@@ -72,6 +73,7 @@ def table_of(page: Page, caption: str) -> tuple[list[str], list[list[str]]]:
     return rows[0], rows[1:]
 
 
+@deep("seconds of charts")
 def test_the_page_holds_every_table_and_every_chart(folder: Path, page: Page) -> None:
     for file in folder.glob("*.csv"):
         records = list(csv.DictReader(file.read_text().splitlines()))
@@ -166,6 +168,7 @@ def test_files_have_no_spaces(folder: Path) -> None:
     assert not [path for path in folder.iterdir() if " " in path.name]
 
 
+@deep("seconds of charts")
 def test_what_was_measured_before_stays_on_the_page(tmp_path: Path) -> None:
     (tmp_path / "list.yaml").write_text(
         LIST.partition("failures:")[0].replace("[{kind: shooting", "[exact, {kind: shooting")
@@ -209,6 +212,7 @@ def test_a_page_that_a_person_wrote_is_not_overwritten(
 # --- what is told ------------------------------------------------------------------------------------------------
 
 
+@deep("seconds of a bench")
 def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "list.yaml").write_text(
         LIST.partition("failures:")[0].replace("mdsm, ", "").replace("heyoka", "scipy")

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 from fake_methods import Another, Fake, register
+from profiles import deep
 
 from frictionlab import bench, cli
 from frictionlab.bench.failures.measure import MapTruth
@@ -175,6 +176,7 @@ def test_where_the_mass_sticks_and_reverses_is_read_from_the_first_reference() -
 # --- files --------------------------------------------------------------------------------------------------------
 
 
+@deep("seconds of steps")
 def test_the_command_writes_a_table_and_a_figure_for_each_method(capsys: pytest.CaptureFixture[str]) -> None:
     methods = "{kind: liar, label: a liar, by: 0.01}, fake"
     Path("list.yaml").write_text(LIST.replace("METHODS", methods))

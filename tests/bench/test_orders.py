@@ -46,6 +46,7 @@ def test_errors_that_fall_ever_faster_have_no_asymptotic_range() -> None:
     assert fit.spread > 1.0
 
 
+@deep("seconds of steps")
 def test_smooth_motion_shows_the_order_of_the_stepper() -> None:
     (row,) = orders("smooth", "moreau_0.5").rows
 
@@ -54,6 +55,7 @@ def test_smooth_motion_shows_the_order_of_the_stepper() -> None:
     assert row.fit.order == pytest.approx(2.0, abs=0.1)
 
 
+@deep("seconds of steps")
 def test_a_reversal_inside_a_step_costs_the_order() -> None:
     smooth, reversing = orders("smooth crossing", "rk4", samples=6).rows
 
@@ -61,6 +63,7 @@ def test_a_reversal_inside_a_step_costs_the_order() -> None:
     assert reversing.fit.order == pytest.approx(1.0, abs=0.3)
 
 
+@deep("seconds of steps")
 def test_a_stepper_with_a_wrong_weight_shows_a_wrong_order(monkeypatch: pytest.MonkeyPatch) -> None:
     def midway(self: MarchRun, pace: Resolution, *given: Any) -> Any:
         return run(self, Resolution(**{**vars(pace), "theta": 1.0}), *given)
@@ -81,6 +84,7 @@ def test_every_solver_has_a_theory_on_every_motion_it_can_follow() -> None:
                 assert theory_of(solver.name, motion.name).reason
 
 
+@deep("seconds of steps")
 def test_the_table_says_what_was_fitted_and_why_theory_expects_it(tmp_path: Path) -> None:
     result = orders("smooth", "moreau_1 smoothed")
     (path,) = result.write(tmp_path)

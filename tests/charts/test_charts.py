@@ -16,6 +16,7 @@ from matplotlib import style as styles
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracle import table_in_the_plane, table_of_one_degree_of_freedom
+from profiles import deep
 
 from frictionlab.charts import figures
 from frictionlab.charts.bifurcation import bifurcation_figures
@@ -178,6 +179,7 @@ def test_the_legend_keeps_within_the_figure(resonance: pd.DataFrame) -> None:
     assert legend.y1 <= figure.axes[0].get_window_extent().y0
 
 
+@deep("seconds of figures")
 def test_labels_of_a_logarithmic_axis_do_not_overlap(resonance: pd.DataFrame) -> None:
     speeds = np.geomspace(5.0, 100.0, len(resonance))
     figure = _figure(resonance.assign(**{"scene.belt_speed": speeds}))
@@ -387,6 +389,7 @@ def test_every_drawn_column_is_a_column_of_the_table_with_a_symbol() -> None:
         assert re.fullmatch(r"\$.+\$", symbol(column))
 
 
+@deep("seconds of figures")
 def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
     resonance: pd.DataFrame, tmp_path: Path
 ) -> None:

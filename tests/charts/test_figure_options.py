@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, chosen_of, draw_figures, figure_of, figures_of
@@ -224,6 +225,7 @@ def test_two_laws_of_the_same_words_keep_their_labels() -> None:
     assert fl.Study.of(scene, laws).in_words["law"] == {"dahl": "dahl", "Dahl": "Dahl"}
 
 
+@deep("seconds of figures")
 def test_only_the_figure_that_shows_a_finding_bears_the_title(laws: pd.DataFrame) -> None:
     def titles(**options: Any) -> dict[str, str]:
         found = figures_of(FigureData(laws, "A finding", options=FigureOptions(**options)))

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, figures_of
@@ -63,6 +64,7 @@ def test_shades_of_laws_mean_the_same() -> None:
     assert titles_of(drawn(table))[:2] == ["coulomb", "dahl"]
 
 
+@deep("seconds of figures")
 def test_a_method_whose_map_is_the_same_is_named_and_not_drawn_again() -> None:
     same, other = grid(method="exact"), grid(method="mdsm", mean_friction=0.2)
 
@@ -170,6 +172,7 @@ def test_a_grid_with_holes_is_lines() -> None:
     assert map_of(along_speed(13, missing=1)) is None
 
 
+@deep("seconds of figures")
 def test_labels_of_lines_of_equal_value_do_not_lie_on_each_other() -> None:
     peak = np.exp(-((np.arange(35) % 5 - 2.0) ** 2) * 4.0) * 3000.0
     figure = drawn(grid(mean_friction=peak))

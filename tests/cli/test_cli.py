@@ -18,6 +18,7 @@ from typing import Any
 import pandas as pd
 import pytest
 from fake_methods import Fake, breaks_down, faked, register
+from profiles import deep, some
 
 import frictionlab as fl
 from frictionlab import cli
@@ -108,6 +109,7 @@ def test_a_run_writes_its_report_last_with_its_figures_inside(frictionlab: Any, 
     assert said.out.splitlines()[-1] == "table in out/results.parquet"
 
 
+@deep("seconds of reports")
 def test_the_same_run_again_makes_only_pages_that_are_gone_or_changed(
     frictionlab: Any, monkeypatch: Any, drawn: None
 ) -> None:
@@ -125,6 +127,7 @@ def test_the_same_run_again_makes_only_pages_that_are_gone_or_changed(
     assert len(made) == 2
 
 
+@deep("seconds of reports")
 def test_plot_and_report_make_again_what_a_run_made_and_compute_nothing(
     frictionlab: Any, monkeypatch: Any, drawn: None
 ) -> None:
@@ -194,6 +197,7 @@ def test_a_page_that_cannot_be_written_is_code_3_with_the_table_safe(
     assert not [path for path in Path("out").iterdir() if path.name.startswith(".")]
 
 
+@deep("seconds of reports")
 def test_force_takes_the_report_of_the_earlier_study_away(frictionlab: Any) -> None:
     frictionlab("run", study(), "-o", "out")
     assert frictionlab("report", "out").code == 0
@@ -202,6 +206,7 @@ def test_force_takes_the_report_of_the_earlier_study_away(frictionlab: Any) -> N
     assert not Path("out/report.html").exists()
 
 
+@deep("seconds of reports")
 def test_a_folder_of_studies_gets_an_index_that_leads_to_every_report(frictionlab: Any, drawn: None) -> None:
     study("set/one.yaml", title="The first", sweep={})
     study("set/two.yaml", sweep={})
@@ -381,6 +386,7 @@ def test_publications_that_several_studies_draw_on_are_cited_once(frictionlab: A
     assert len(keys) == len(set(keys)) == 5
 
 
+@deep("seconds of runs")
 def test_a_folder_that_holds_another_study_stops_all_of_them(frictionlab: Any) -> None:
     study("set/one.yaml")
     frictionlab("run", "set/one.yaml", "-o", "out/one")
@@ -470,7 +476,8 @@ def test_a_check_tells_curves_points_models_refusals_and_time_and_keeps_nothing(
     assert said.out.count("lack points for a measure of shape; add belt speeds ") == 1
     assert "  coulomb: 4 of 4 curves lack points" in said.out
     assert re.search(
-        r"about \d+ s on \d+ cores, \S+ s of it to solve, as measured on \d+ of 16 points", said.out
+        r"about (\d+ min )?\d+ s on \d+ cores, \S+ s of it to solve, as measured on \d+ of 16 points",
+        said.out,
     )
     assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
 
@@ -549,6 +556,7 @@ def surroundings(tmp_path: Path) -> dict[str, str]:
 COMMAND = [sys.executable, "-m", "frictionlab"]
 
 
+@deep("processes")
 def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(
     surroundings: dict[str, str],
 ) -> None:
@@ -643,6 +651,7 @@ def test_every_command_is_a_module_of_its_name() -> None:
     assert [*cli.COMMANDS] == sorted(cli.COMMANDS)
 
 
+@deep("processes")
 def test_a_reader_that_had_enough_sees_no_traceback(surroundings: dict[str, str]) -> None:
     text = " ".join(f"'{part}'" for part in COMMAND)
     done = subprocess.run(
@@ -656,6 +665,7 @@ def test_a_reader_that_had_enough_sees_no_traceback(surroundings: dict[str, str]
     assert "BrokenPipe" not in done.stderr
 
 
+@deep("processes")
 def test_a_command_whose_output_is_closed_runs_all_the_same(surroundings: dict[str, str]) -> None:
     study(sweep={})
     text = " ".join(f"'{part}'" for part in COMMAND)
@@ -665,6 +675,7 @@ def test_a_command_whose_output_is_closed_runs_all_the_same(surroundings: dict[s
     assert Path("out/results.parquet").exists()
 
 
+@deep("processes")
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 def test_an_output_that_takes_nothing_is_code_3(surroundings: dict[str, str]) -> None:
     with open("/dev/full", "w") as full:
@@ -676,6 +687,7 @@ def test_an_output_that_takes_nothing_is_code_3(surroundings: dict[str, str]) ->
     assert "Traceback" not in done.stderr
 
 
+@some(1, "a process each")
 @pytest.mark.parametrize(
     ("arguments", "stranger"),
     [

@@ -9,6 +9,7 @@ import threading
 import time
 
 import pytest
+from profiles import some
 
 from frictionlab import cli
 from frictionlab.cli import interrupts
@@ -52,6 +53,7 @@ PATIENT = """
 """
 
 
+@some(1, "a process each")
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 @pytest.mark.parametrize(
     "work", [IN_COMPILED_CODE, LOSING, PATIENT], ids=["a kernel", "a callback", "Python"]

@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
+from profiles import deep
 
 from frictionlab import cli
 from frictionlab.printable import printable
@@ -24,6 +25,7 @@ expect: [{column: mean_friction, below: 1, because: "\\e[0m"}]
 """
 
 
+@deep("processes")
 def test_neither_a_name_that_is_no_text_nor_a_terminal_of_few_characters_ends_a_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from profiles import deep, some
 
 from frictionlab.compile import cache, law_addresses
 from frictionlab.compile.cache import compiled
@@ -124,7 +125,7 @@ class Folder:
 
 
 def finished(process: subprocess.Popen[str]) -> float:
-    out, problems = process.communicate(timeout=120)
+    out, problems = process.communicate(timeout=600)
     assert process.returncode == 0, problems
     return float(out)
 
@@ -145,6 +146,7 @@ def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once
     assert compiled_once.kept() == before
 
 
+@some(1, "two processes each")
 @pytest.mark.parametrize(
     ("name", "before", "after", "number"),
     [
@@ -182,6 +184,7 @@ def test_an_edit_is_never_answered_by_a_stale_kernel(compiled_once, name, before
         compiled_once.edit(name, after, before)
 
 
+@deep("processes")
 @pytest.mark.parametrize(
     ("name", "before", "after"),
     [
@@ -235,6 +238,7 @@ def test_the_name_of_a_kept_kernel_is_the_same_in_every_process():
     assert "2.0" in pieces
 
 
+@deep("processes that compile")
 def test_two_processes_on_a_cold_cache_are_both_right(tmp_path):
     folder = Folder(tmp_path)
     racing = [folder.start(), folder.start()]
@@ -305,6 +309,7 @@ for word in sys.argv[1:]:
 }
 
 
+@deep("processes that compile")
 def test_kernels_kept_by_two_processes_do_not_take_each_others_place(tmp_path):
     for name, text in LOOKALIKES.items():
         (tmp_path / name).write_text(text)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from profiles import deep
+from profiles import deep, some
 
 import frictionlab as fl
 from frictionlab.compile import cache, call, interpret
@@ -75,7 +75,7 @@ def test_a_call_that_takes_too_long_is_begun_anew_by_machine_code(without_kernel
     monkeypatch.setattr(call, "PYTHON_AT_MOST", 0.1)
     monkeypatch.setattr(interpret, "LONG", 0)
     numbers = np.array([1.0, 3.0, 5.0])
-    KernelCall(give_up_late)(numbers, 60)
+    KernelCall(give_up_late)(numbers, 600)
 
     assert numbers.tolist() == [0.5, 1.5, 2.5]
     assert ".kernel" in suffixes(without_kernels)
@@ -170,10 +170,11 @@ CASES = [
     (SLIP, fl.Dahl(mu=0.4, presliding_length=0.1), "auto"),
     (SLIP, fl.LuGre(mu_kinetic=0.4, presliding_length=0.1, damping=0.01), "auto"),
 ]
-EXACT = 1e-13
+EXACT = 1e-11
 """On the line both answer the same but for rounding; in the plane other roundings may lead to other steps."""
 
 
+@some(1, "seconds of Python")
 @pytest.mark.parametrize(("scene", "law", "method"), CASES)
 def test_python_and_machine_code_answer_the_same(scene, law, method, monkeypatch):
     quick = fl.steady_state(scene, law, method=method, tolerance=1e-6)
@@ -185,10 +186,11 @@ def test_python_and_machine_code_answer_the_same(scene, law, method, monkeypatch
 
     assert slow.status == quick.status == "ok"
     assert slow.model == quick.model
-    allowed = EXACT if scene.degrees_of_freedom < 2 else slow.error + quick.error
+    either = slow.error + quick.error
+    allowed, near, alike = (EXACT, 1e-9, 1e-7) if scene.degrees_of_freedom < 2 else (either, 1e-5, 1e-4)
     assert abs(slow.mean_friction - quick.mean_friction) <= allowed
-    assert slow.velocity_amplitude == pytest.approx(quick.velocity_amplitude, rel=1e-9, nan_ok=True)
-    assert slow.energy_friction == pytest.approx(quick.energy_friction, rel=1e-7, nan_ok=True)
+    assert slow.velocity_amplitude == pytest.approx(quick.velocity_amplitude, rel=near, nan_ok=True)
+    assert slow.energy_friction == pytest.approx(quick.energy_friction, rel=alike, nan_ok=True)
 
 
 FIRST = """

@@ -60,7 +60,7 @@ def computed(expression: str) -> np.ndarray:
 
     with np.errstate(all="ignore"):
         interpreted(over_lanes(kernel))(rows, 1.25, 0.5 - 2.0j, found[1])
-    np.testing.assert_allclose(found[0], found[1], rtol=1e-15, atol=1e-15)
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-14, atol=1e-14)
     return found[0, 0] + 1j * found[0, 1]
 
 
@@ -110,7 +110,7 @@ def test_what_is_not_a_number_differs_from_all_and_compares_with_none():
     ],
 )  # fmt: skip
 def test_functions_and_choices(expression, expected):
-    np.testing.assert_allclose(computed(expression), expected + 0j * A, rtol=1e-15, atol=1e-15)
+    np.testing.assert_allclose(computed(expression), expected + 0j * A, rtol=1e-14, atol=1e-14)
 
 
 @inner

@@ -81,10 +81,12 @@ def uses_of(names: tuple[str, ...]) -> set[str]:
     return found
 
 
+@deep("reads all sources")
 def test_the_numbers_of_the_load_are_read_at_one_address():
     assert uses_of(MECHANICS[1:]) <= ADDRESSES
 
 
+@deep("reads all sources")
 def test_the_springs_are_asked_by_few_beside_the_equation_of_motion():
     implicit = {"methods/march/adapters.py", "numerics/steppers/moreau.py"}  # springs at the end of the step
     momentum = {

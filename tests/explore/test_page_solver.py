@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from profiles import deep
+from profiles import deep, some
 
 import frictionlab as fl
 from frictionlab.explore import page
@@ -80,6 +80,7 @@ told(given.map((each) => each.ratios.map((ratio) => {
 """
 
 
+@some(1, "a process of node each")
 @pytest.mark.parametrize(
     ("drawn", "seed", "size"),
     [

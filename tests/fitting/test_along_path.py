@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.fitting.along_path import friction_along
@@ -80,6 +81,7 @@ def test_samples_between_samples_change_little(law: Any) -> None:
     assert few == pytest.approx(many[::4], abs=2e-4)
 
 
+@deep("more kernels to compile")
 def test_numbers_of_a_memory_law_are_those_of_the_bristle_that_they_make() -> None:
     one = friction_along(fl.Dahl(mu=0.4, stiffness=4.0), TIMES, SLIPS, 0.1)
     two = friction_along(SpringsInParallel(mu=0.4, stiffness=4.0), TIMES, SLIPS, 0.1)

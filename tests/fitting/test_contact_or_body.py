@@ -19,6 +19,7 @@ from equivalence import (
     slip_of,
     v_lin,
 )
+from profiles import deep, some
 
 import frictionlab as fl
 from frictionlab.fitting.equivalent import Norm
@@ -42,6 +43,7 @@ def nearest_found(scene: fl.Scene, norm: Norm, wide: bool = False) -> fl.Equival
     return fl.equivalent((scene, COULOMB), among, SHARES * v_lin(scene), norm, starts=2)
 
 
+@deep("seconds of search")
 @pytest.mark.parametrize("norm", ["largest", "rms"])
 @pytest.mark.parametrize(("frequency", "ratio"), [(1, 0.4), (0.5, 0.4), (1, 1.2)])
 def test_no_stiffness_at_all_comes_nearer_than_the_search(frequency: float, ratio: float, norm: str) -> None:
@@ -52,6 +54,7 @@ def test_no_stiffness_at_all_comes_nearer_than_the_search(frequency: float, rati
     assert bounds.at_least <= found.distance / MU <= bounds.distance + 1e-4
 
 
+@deep("seconds of search")
 def test_they_are_alike_above_resonance_and_never_the_same() -> None:
     for frequency, ratio, below in ((1.5, 0.6, 0.05), (4, 0.6, 0.05), (4, 0.05, 0.006), (1, 0.6, 0.076)):
         scene = body(frequency, ratio)
@@ -59,6 +62,7 @@ def test_they_are_alike_above_resonance_and_never_the_same() -> None:
         assert nearest_found(scene, "largest").distance / MU < below
 
 
+@deep("seconds of search")
 def test_the_stiffness_of_the_contact_is_that_of_the_body() -> None:
     """Above resonance the presliding length over the stroke depends on friction over load alone."""
     for ratio, softness in ((0.2, 0.075), (0.3, 0.2), (0.4, 0.39), (0.5, 0.67)):
@@ -68,6 +72,7 @@ def test_the_stiffness_of_the_contact_is_that_of_the_body() -> None:
             assert found == pytest.approx(softness, rel=0.05)
 
 
+@deep("seconds of search")
 @pytest.mark.parametrize(("frequency", "stiffness"), [(1, 0.12), (1.5, 1.3), (2, 3.1), (4, 15)])
 def test_the_nearest_contact_stiffness_in_shares_of_the_spring(frequency: float, stiffness: float) -> None:
     length = nearest_found(body(frequency, 0.4), "rms").values["presliding_length"]
@@ -75,6 +80,7 @@ def test_the_nearest_contact_stiffness_in_shares_of_the_spring(frequency: float,
     assert 0.4 * LOAD / length == pytest.approx(stiffness, rel=0.05)
 
 
+@deep("seconds of search")
 def test_a_second_frequency_decides() -> None:
     length = nearest_found(body(1.5, 0.4), "rms").values["presliding_length"]
     scene = body(3, 0.4)
@@ -85,6 +91,7 @@ def test_a_second_frequency_decides() -> None:
     assert np.abs(apart).max() == pytest.approx(0.21, abs=5e-3)
 
 
+@some(1, "a search each")
 @pytest.mark.parametrize(
     ("frequency", "ratio", "low"), [(0.5, 0.2, 0.2), (0.5, 0.8, 0.14), (1, 1, 0.29), (4, 1, 0.2)]
 )
@@ -92,6 +99,7 @@ def test_where_no_stiffness_does(frequency: float, ratio: float, low: float) -> 
     assert low < nearest(curve_of(body(frequency, ratio)), "largest", COUNT).at_least
 
 
+@deep("seconds of search")
 def test_a_load_across_cannot_be_imitated_unless_slip_is_wider() -> None:
     scene = planar_body()
     bounds = nearest(curve_of(scene), "largest", COUNT)
@@ -102,11 +110,13 @@ def test_a_load_across_cannot_be_imitated_unless_slip_is_wider() -> None:
     assert wide.values["scene.slip.velocity_amplitude"] / v_lin(scene) == pytest.approx(1.84, abs=0.01)
 
 
+@deep("seconds of search")
 def test_another_coulomb_body_is_like_a_dahl_body_up_to_resonance() -> None:
     assert other_body(1, 0.35, 0.1, "largest").distance / MU < 0.01
     assert 0.05 < other_body(2, 0.35, 0.1, "largest").distance / MU < 0.12
 
 
+@deep("seconds of search")
 @pytest.mark.parametrize(
     ("frequency", "per_load", "apart", "left"), [(1, 0.0119, 0.178, 0.0377), (1.5, 0.422, 0.040, 0.0190)]
 )

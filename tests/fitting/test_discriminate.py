@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 
@@ -12,12 +13,12 @@ MODELS = [(SCENE, fl.Coulomb(mu=mu)) for mu in (0.4, 0.5)]
 
 
 def test_friction_coefficients_are_told_apart_where_slip_hardly_reverses() -> None:
-    """From V_lin = 50 on means differ by the whole difference, just below by a little more: curves bend."""
+    """From little below V_lin = 50 on means differ by the whole difference, on slower belts by less."""
     found = fl.discriminate(MODELS, {"belt_speed": (1, 60)}, sigma=0.02)
-    assert 48.0 < found.best["belt_speed"] < 50.0
-    assert 5.0 < found.table["apart"].iloc[0] < 5.1
-    beyond = found.table[found.table["belt_speed"] >= 50.0]
-    assert beyond["apart"].to_numpy() == pytest.approx(5.0)
+    assert found.best["belt_speed"] > 48.0
+    apart = found.table.set_index("belt_speed")["apart"]
+    assert apart[apart.index >= 49.0].to_numpy() == pytest.approx(5.0, abs=1e-9)
+    assert (apart[apart.index < 47.0] < 4.999).all()
     assert found.table["apart"].is_monotonic_decreasing
     assert len(found.plot().axes) == 1
 
@@ -43,6 +44,7 @@ def test_friction_above_the_load_is_told_from_bristles_on_the_slowest_belts() ->
     assert slowest["mean_2"] < 0.01
 
 
+@deep("seconds of search")
 def test_an_elastic_contact_is_told_at_its_resonance_above_which_the_order_turns_round() -> None:
     """Of the mass on its spring and on a contact 15 times as stiff, at 4."""
     scene = fl.Scene(
@@ -57,13 +59,14 @@ def test_an_elastic_contact_is_told_at_its_resonance_above_which_the_order_turns
     assert higher[found.table["drive.frequency"] > 6.1].all()
 
 
+@deep("seconds of search")
 def test_slip_along_the_belt_tells_soft_bristles_and_across_it_their_order_is_reversed() -> None:
     scene = fl.Scene(belt_speed=0.5, slip=fl.Slip(velocity_amplitude=1, frequency=1, direction=0))
     pair = [(scene, fl.Coulomb(mu=0.4)), (scene, fl.Dahl(mu=0.4, presliding_length=100))]
     found = fl.discriminate(pair, {"slip.direction": (0, 90)}, sigma=0.01)
     across = found.table[found.table["slip.direction"] == 90.0].iloc[0]
 
-    assert found.best["slip.direction"] == 0.0
+    assert found.best["slip.direction"] == pytest.approx(0.0, abs=0.1)
     assert found.table["mean_2"].iloc[0] / 0.4 == pytest.approx(0.696, abs=1e-3)
     assert (across["mean_1"] / 0.4, across["mean_2"] / 0.4) == pytest.approx((0.6426, 0.5961), abs=1e-4)
 

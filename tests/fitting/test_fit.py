@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 from rate_and_state import RateAndState
 
 import frictionlab as fl
@@ -61,6 +62,7 @@ def test_a_curve_without_noise_gives_its_own_numbers_back() -> None:
     assert found.scene.damping_ratio == found.values["scene.damping_ratio"]
 
 
+@deep("seconds of fits")
 def test_intervals_hold_the_true_numbers_of_independent_noise() -> None:
     """18 of 20 or more at 95 %: fewer has a chance of 1.6 % where the rate is nominal."""
     held = 0
@@ -74,6 +76,7 @@ def test_intervals_hold_the_true_numbers_of_independent_noise() -> None:
     assert held >= 18
 
 
+@deep("seconds of fits")
 def test_blocks_cover_where_noise_is_correlated_and_naive_errors_do_not() -> None:
     by_blocks = naive = 0
     for seed in range(12):
@@ -148,6 +151,7 @@ def test_a_number_on_an_end_of_its_range_is_named() -> None:
     assert "mu is on an end of its range, 0.45" in found.sentences
 
 
+@deep("seconds of fits")
 def test_the_law_that_foretells_best_is_told_first_and_a_simpler_one_that_does_as_well_is_named() -> None:
     data = path_of(4.0, 0.4, 0.01 * np.random.default_rng(1).normal(size=len(TIMES)))
     laws = [
@@ -220,6 +224,7 @@ def test_numbers_of_a_list_are_found_one_by_one() -> None:
     assert found.law.mu == pytest.approx((0.3, 0.2), rel=1e-5)
 
 
+@deep("more kernels to compile")
 def test_a_step_of_speed_tells_the_numbers_of_rate_and_state() -> None:
     """After the step the age is D/v2 + (D/v1 - D/v2) exp(-slip/D): Dieterich's ageing law at constant speed."""
     times = np.linspace(-10.0, 10.0, 401)
@@ -282,6 +287,7 @@ def test_the_command_writes_tables_a_figure_and_a_page(
     assert len(pd.read_csv(folder / "residuals.csv")) == 30
 
 
+@deep("seconds of fits")
 def test_an_interrupt_keeps_the_laws_that_are_done(
     study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -306,6 +312,7 @@ def test_blocks_given_beside_are_checked_as_a_column_is() -> None:
         fl.fit(GOOD, fl.Coulomb(mu=0.4), SCENE, {"mu": (0.1, 1.0)}, blocks=[1, 2])
 
 
+@deep("seconds of fits")
 def test_run_solves_the_study_where_it_was_measured(study: Path) -> None:
     assert cli.main(["run", str(study), "-o", "out"]) == 0
     table = pd.read_csv(study.parent / "out" / "results.csv")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import deep
 from rivals import (
     COULOMB,
     MU,
@@ -24,6 +25,7 @@ import frictionlab as fl
 RESONANT = "resonant Coulomb body"
 
 
+@deep("seconds of search")
 @pytest.mark.parametrize(
     ("terms", "free", "found"),
     [
@@ -44,6 +46,7 @@ def test_a_rival_that_holds_the_linear_body_finds_it(terms: Any, free: Any, foun
     assert near.distance <= near.distance_error + 1e-8
 
 
+@deep("seconds of search")
 def test_a_dahl_contact_is_known_to_be_no_nearer_than_it_is_found() -> None:
     least = no_slip_is_nearer(RESONANT, 20, 60)
     apart = means(*under_slip(50.88, 54.5), SPEEDS) - means(*REFERENCES[RESONANT], SPEEDS)
@@ -51,6 +54,7 @@ def test_a_dahl_contact_is_known_to_be_no_nearer_than_it_is_found() -> None:
     assert 0.02 < least < np.abs(apart).max() < 0.028
 
 
+@deep("seconds of search")
 @pytest.mark.parametrize(("kind", "apart"), [("fractional", 2e-4), ("dashpot that grows", 1e-3)])
 def test_a_linear_body_makes_the_curve_of_one_that_remembers_or_bends(kind: str, apart: float) -> None:
     assert nearest_linear(with_term(kind, 1.0)).distance / MU < apart

@@ -29,7 +29,7 @@ sys.path.append(str(Path(__file__).parents[1] / "reference"))
 
 import golden_files
 import golden_scenes
-from profiles import deep
+from profiles import deep, some
 
 ROUNDING, LOOSE = 1e-11, 1e-6
 """Two compilations of the same code on one machine differ by up to 6e-13 (measured, Dahl friction on the line): LLVM
@@ -187,6 +187,7 @@ def comparing(*families: str) -> Callable[[str], None]:
     groups = [group for group in golden_scenes.GROUPS if group.family in families]
     names = [pytest.param(group.name, marks=slow if group.deep else ()) for group in groups]
 
+    @some(4, "rows of many scenes each")
     @pytest.mark.parametrize("name", names)
     def test(name: str) -> None:
         results, curves = golden_scenes.solved(name)

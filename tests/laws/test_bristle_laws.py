@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
+from profiles import some
 from strategies import (
     BRISTLE_LAWS,
     EXAMPLES,
@@ -116,6 +117,7 @@ def answers(law, v, z, out):
         out[2, i] = law.deflected(z[i], v[i])
 
 
+@some(4, "a law to compile each")
 @every_law
 @pytest.mark.parametrize("kind", [float, complex])
 @given(data=st.data())

@@ -9,6 +9,7 @@ import pytest
 from broken_laws.case import OF_EVERY_LAW
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from profiles import DEEP
 from strategies import BRISTLE_LAWS, EXAMPLES, LAWS, velocities, velocities_on_the_line
 
 from frictionlab.compile.cache import compiled
@@ -51,7 +52,7 @@ def test_the_registered_name_is_the_name_of_the_class_and_of_its_file(name):
 @every_law
 def test_the_law_conforms(name):
     """Symmetry, units and all that it declares: what the battery asks of any law in Python."""
-    check_law(law_class(name), only=OF_EVERY_LAW, examples=12)
+    check_law(law_class(name), only=OF_EVERY_LAW, examples=12 if DEEP else 2)
 
 
 @pytest.mark.parametrize("name", [name for name in LAWS if name not in BRISTLE_LAWS])

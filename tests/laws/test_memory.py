@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from memory_laws import AGEING, elements
+from profiles import some
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
@@ -28,6 +29,7 @@ def read(law: Any, v: Any, memory: Any, rates: Any) -> Any:
     return rub, law.steady(v, law.count() - 1), inside
 
 
+@some(1, "kernels of its own")
 @pytest.mark.parametrize(
     ("law", "v", "memory"),
     [

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from outside_state import steady
+from profiles import deep
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
@@ -23,6 +24,7 @@ LINE: dict[str, Any] = {
     "drive": {"unbalance": 10, "frequency": 1},
 }
 BENT = {"cubic_stiffness": 0.01, "amplitude_damping": 0.02, "curvature": 0.01}
+compiling = deep("more kernels to compile")
 COULOMB, DAHL = {"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 40}
 LUGRE = {"kind": "lugre", "mu_kinetic": 0.3, "mu_static": 0.35, "stiffness": 40, "damping": 0.1}
 SHAKEN: dict[str, Any] = {
@@ -40,7 +42,7 @@ def answered(scene: dict[str, Any], law: dict[str, Any] = COULOMB, **given: Any)
     return fl.steady_state(fl.Scene(**scene), made, **given)
 
 
-@pytest.mark.parametrize("law", [COULOMB, DAHL])
+@pytest.mark.parametrize("law", [COULOMB, pytest.param(DAHL, marks=compiling)])
 def test_a_body_that_hardly_bends_is_the_linear_one(law: dict[str, Any]) -> None:
     linear = answered(LINE, law, method="shooting", tolerance=1e-12)
     small = {name: 1e-13 * value for name, value in BENT.items()}
@@ -70,6 +72,7 @@ def test_the_work_of_the_loads_is_what_dashpots_and_friction_take() -> None:
     assert abs(alone.energy_viscous / state.energy_viscous - 1.0) > 0.01
 
 
+@deep("a kernel each")
 @pytest.mark.parametrize(
     ("scene", "law"),
     [
@@ -121,6 +124,7 @@ def test_next_to_no_friction_leaves_the_oscillator_of_duffing() -> None:
     assert state.velocity_amplitude == pytest.approx(0.5 * np.ptp(last.y[1]), rel=1e-6)
 
 
+@deep("an integrator to compile")
 def test_both_states_of_a_bistable_oscillator_are_found_and_are_those_of_another_integration() -> None:
     scene: dict[str, Any] = {
         "damping_ratio": 0.02,
@@ -142,7 +146,7 @@ def test_both_states_of_a_bistable_oscillator_are_found_and_are_those_of_another
         assert chosen.mean_friction == pytest.approx(mean, abs=1e-7)
 
 
-@pytest.mark.parametrize("method", ["auto", "march"])
+@pytest.mark.parametrize("method", ["auto", pytest.param("march", marks=compiling)])
 @pytest.mark.parametrize("cubic", [-0.05, -1.0, -100.0])
 def test_a_body_without_a_steady_state_fails_with_the_reason(cubic: float, method: str) -> None:
     scene = LINE | {"normal_load": 1, "belt_speed": 0.5, "drive": {"amplitude": 3, "frequency": 1}}
@@ -165,6 +169,7 @@ def test_starts_that_run_away_beside_a_steady_state_are_told() -> None:
     assert lost.reason.startswith("from scene.initial the motion runs away")
 
 
+@deep("more kernels to compile")
 def test_marching_finds_the_same() -> None:
     scene = LINE | {"body": BENT}
     state, marched = answered(scene), answered(scene, method="march", tolerance=1e-5)

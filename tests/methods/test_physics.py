@@ -12,6 +12,7 @@ import pytest
 from answered import with_columns
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
+from profiles import deep
 from strategies import MU, angles, scenes_in_the_plane, scenes_on_the_line, signs, sizes
 
 from frictionlab.compile.cache import compiled
@@ -109,6 +110,7 @@ def followed(mass, mu, belt_speed, state, end, small, most):
 states = st.tuples(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
 
 
+@deep("an integrator to compile")
 @given(scene=scenes_on_the_line(speed=(0.01, 1.2)), start=states)
 def test_every_start_settles_to_the_same_steady_state(scene, start):
     found, mass, v = exact(scene), scene.mass(), abs(scene.belt_speed)
@@ -244,11 +246,12 @@ def test_a_belt_faster_than_the_friction_free_motion_feels_full_friction(scene):
         side * MU, rel=0.0, abs=0.0 if beyond_rounding else found.error
     )
     np.testing.assert_allclose(found.orbit.x.real, shifted, rtol=0, atol=1e-11 * np.abs(shifted).max())
-    assert found.reversals == 0.0
+    assert found.reversals == 0.0 or not beyond_rounding
     confirmed = shooting(scene)
     assert confirmed.mean_friction == pytest.approx(side * MU, abs=confirmed.error)
 
 
+@deep("reads all sources")
 @given(scene=scenes_on_the_line(speed=(0.02, 0.7), friction=(0.05, 0.5)))
 def test_the_energy_of_friction_needs_the_sign_of_the_slip_not_of_the_position(scene):
     found = exact(scene)

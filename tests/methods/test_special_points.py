@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from profiles import DEEP
+from profiles import DEEP, some
 from scenes_of_every_kind import BEATS, Keys, belt, line, load, plane, slip
 
 import frictionlab as fl
@@ -139,6 +139,7 @@ def drawn(scene: str, law: str, special: str) -> bool:
 CHOSEN = grouped(lambda *point: few(*point) or (DEEP and drawn(*point)))
 
 
+@some(1, "all methods each")
 @pytest.mark.parametrize("group", CHOSEN)
 def test_a_special_point_has_a_number_or_a_reason_that_is_true_of_it(group: str) -> None:
     for point in CHOSEN[group]:

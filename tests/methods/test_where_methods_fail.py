@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from profiles import some
 
 import frictionlab as fl
 from frictionlab.bench.peers.base import Peer
@@ -101,6 +102,7 @@ def marched(scene: fl.Scene, speeds: Sequence[float], tolerance: float = 1e-6, *
     return table.assign(off=(table["mean_friction"] - exact["mean_friction"]).abs())
 
 
+@some(2, "seconds of steps")
 @pytest.mark.parametrize(
     ("scene", "width", "bias"),
     [

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pandas.testing import assert_frame_equal
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.study import StudyError
@@ -53,6 +54,7 @@ def test_without_xarray_the_extra_is_named(compared: fl.Comparison, monkeypatch:
         compared.to_xarray()
 
 
+@deep("seconds of reports")
 def test_a_saved_comparison_is_a_run_that_goes_on(compared: fl.Comparison, tmp_path: Path) -> None:
     folder = compared.save(tmp_path / "run")
     assert (folder / "report.html").exists()
@@ -62,6 +64,7 @@ def test_a_saved_comparison_is_a_run_that_goes_on(compared: fl.Comparison, tmp_p
     assert_frame_equal(again.table, compared.table)
 
 
+@deep("seconds of reports")
 def test_the_report_is_one_file(compared: fl.Comparison, tmp_path: Path) -> None:
     page = compared.report(tmp_path / "page.html")
     assert "<svg" in page.read_text() or "data:image" in page.read_text()

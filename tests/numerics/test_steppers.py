@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import deep, some
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
@@ -76,7 +77,9 @@ def marched(stepper: Any, push: Push, steps: int, **changes: Any) -> Any:
     """The march once to the end, from rest."""
     start = 0j if push.planar else 0.0
     settings = settings_of(push, steps, **changes)
-    return KernelCall(march_laps, LAW)(body_of(push), stepper, settings, MarchState(start, start, NOTHING))
+    return KernelCall(march_laps, LAW)(
+        body_of(push), stepper, settings, MarchState(start, start, 0.0 * start + NOTHING)
+    )
 
 
 def end_of(stepper: Any, push: Push, steps: int, **changes: Any) -> np.ndarray:
@@ -103,6 +106,7 @@ def worst_order(stepper: Any, push: Push, shifts: int) -> float:
     return float(np.polyfit(np.log(1.0 / GRIDS), np.log(errors), 1)[0])
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize(
     ("push", "stepper", "low", "high"),
     [
@@ -118,6 +122,7 @@ def test_jumps_of_friction_leave_the_orders_that_are_known_of_them(push, stepper
     assert low <= worst_order(stepper, push, 6) <= high
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize(
     ("stepper", "order", "grids"), [(Rk4(), 4, 400), (Moreau(0.5), 2, 800), (Moreau(1.0), 1, 12_800)]
 )
@@ -127,6 +132,7 @@ def test_planar_slip_without_rest_is_stepped_at_the_declared_order(stepper, orde
     assert math.log(coarse / fine, 4.0) == pytest.approx(order, abs=0.25 if order < 4 else 1.0)
 
 
+@some(2, "millions of steps")
 @pytest.mark.parametrize("steps", [12_800, 51_200, 102_403, 1_638_400])
 @pytest.mark.parametrize("stepper", [Rk4(), Moreau(1.0)])
 def test_equal_steps_end_with_the_lap_however_their_sum_is_rounded(stepper, steps):
@@ -207,4 +213,4 @@ def test_smoothing_rises_at_its_slope_and_leaves_its_tail(shape, slope, tail):
     share = compiled(share_of)
     assert share(shape, 1e-6) == pytest.approx(slope * 1e-6, rel=1e-9)
     for u in (3.0, 10.0, 30.0):
-        assert 0.0 <= 1.0 - share(shape, u) <= tail(u) * (1.0 + 1e-9) + 1e-16
+        assert 0.0 <= 1.0 - share(shape, u) <= tail(u) * (1.0 + 1e-9) + 1e-15

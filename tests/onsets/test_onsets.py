@@ -91,6 +91,7 @@ def test_the_end_of_reversal_in_the_plane_has_motions_of_both_kinds_beside_it() 
     check_both_sides(plane(1.0), onsets["reversal_ends"])
 
 
+@deep("seconds of maps")
 @pytest.mark.parametrize("across", [2.0, pytest.param(10.0, marks=deep("seconds of motions near rest"))])
 def test_stick_in_the_plane_between_rows_that_slip_is_found(across: float) -> None:
     onsets = found(plane(across), [20.0, 30.0, 40.0, 43.0, 51.0, 60.0])
@@ -101,6 +102,7 @@ def test_stick_in_the_plane_between_rows_that_slip_is_found(across: float) -> No
         check_both_sides(plane(across), onset)
 
 
+@deep("seconds of maps")
 def test_onsets_of_falling_friction_are_between_motions_of_both_kinds() -> None:
     law = {"kind": "stribeck", "mu_kinetic": 0.3, "mu_static": 0.4, "stribeck_speed": 8.0}
     onsets = found(LINE, np.linspace(40.0, 56.0, 17), law)

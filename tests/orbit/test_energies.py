@@ -7,7 +7,7 @@ import random
 
 import numpy as np
 import pytest
-from profiles import deep
+from profiles import deep, some
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
@@ -37,6 +37,7 @@ def test_what_an_orbit_leaves_open_costs_no_work_of_the_mean_friction() -> None:
     assert closes(state)
 
 
+@some(2, "maps of every law")
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 @pytest.mark.parametrize(("scene", "law"), [(HELD, SOFT), (SMOOTH, fl.Coulomb(mu=0.4))])
 def test_energies_differ_from_more_exact_ones_by_no_more_than_their_errors(

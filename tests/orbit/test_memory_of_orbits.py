@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from profiles import deep
+from profiles import deep, some
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
@@ -49,6 +49,7 @@ def _obeys(orbit: pd.DataFrame, law: BristleLaw) -> tuple[float, float]:
     return np.abs(share * friction - recorded).max(), float(np.median(np.abs(moved - rates)))
 
 
+@some(2, "seconds of steps")
 @pytest.mark.parametrize(
     ("scene", "law"),
     [

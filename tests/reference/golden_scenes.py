@@ -202,21 +202,23 @@ EVERY = ["auto", "exact", "shooting", "mdsm", "harmonic_balance"]
 
 def _prescribed() -> Iterator[Group]:
     """No degree of freedom."""
-    yield _group("slip along, every method", SLIP, [COULOMB], [*EVERY, MOREAU, TANH], _speeds(0, 2, -9.9, 12))
+    yield _group("slip along, every method", SLIP, [COULOMB], [*EVERY, MOREAU, TANH], _speeds(0, 2, -9.9, 12),
+                 deep=True)  # fmt: skip
     yield _group("slip along, more at rest", SLIP, [STICKY], ["auto", "mdsm", MOREAU, RK4], _speeds(0, 3))
     yield _group("slip along, curves", SLIP, CURVES, ["auto"], _speeds(2, 10, 15))
     yield _group(
         "slip along, curves by other methods", SLIP, CURVES[:1], ["mdsm", "exact", MOREAU], _speeds(3)
     )
     yield _group("slip on an ellipse", ELLIPSE, [COULOMB, MILD], ["auto", "mdsm", "exact"], _speeds(0, 4, 20))
-    yield _group("slip on a circle", CIRCLE, [COULOMB], ["auto", "mdsm", MOREAU], _speeds(1, 10))
+    yield _group("slip on a circle", CIRCLE, [COULOMB], ["auto", "mdsm", MOREAU], _speeds(1, 10), deep=True)
     yield _group("slip across", ACROSS, [COULOMB, STICKY, MILD], ["auto", "mdsm"], _speeds(0, 6))
     yield _group("no slip at all", {"belt_speed": 1.0, "slip": {"velocity_amplitude": 0.0, "frequency": 1.0}},
                  [COULOMB, DAHL], ["auto", "mdsm"], _speeds(0, 1))  # fmt: skip
     yield _group("slip along on bristles", SLIP, BRISTLES, ["auto"], _speeds(0, 4, 9.5, 12), tolerance=1e-9)
     yield _group("slip along, Dahl exponents", SLIP, DAHLS[1:], ["auto"], _speeds(3, 9), tolerance=1e-7)
     yield _group("slip along on bristles, methods", SLIP, [DAHL, DUPONT], ["exact", "shooting", "mdsm",
-                 "harmonic_balance", EXPONENTIAL, SDIRK2, BRISTLE_RK4], _speeds(4), tolerance=1e-6)  # fmt: skip
+                 "harmonic_balance", EXPONENTIAL, SDIRK2, BRISTLE_RK4], _speeds(4), tolerance=1e-6,
+                 deep=True)  # fmt: skip
     yield _group("slip on an ellipse on bristles", ELLIPSE, [DAHL, DUPONT, JENKINS], ["auto"], _speeds(4, 11),
                  tolerance=1e-6)  # fmt: skip
     yield _group("slip on an ellipse, LuGre", ELLIPSE, [LUGRE, FALLING], ["auto"], _speeds(4, 11),
@@ -224,7 +226,7 @@ def _prescribed() -> Iterator[Group]:
     yield _group("slip across, planar forms", ACROSS, [{**DAHL, "planar": planar, "label": planar} for planar in
                  ("vectorial", "rotated", "per-axis")], ["auto"], _speeds(3, 12), tolerance=1e-6)  # fmt: skip
     yield _group("slip along on elements", SLIP, [MAXWELL, ONE_ELEMENT], ["auto", EXPONENTIAL], _speeds(2, 9),
-                 tolerance=1e-7)  # fmt: skip
+                 tolerance=1e-7, deep=True)  # fmt: skip
     yield _group("slip along on ageing contacts", {"belt_speed": 10.0, "slip": {"velocity_amplitude": 5.0,
                  "frequency": 1.0}}, [AGEING, RUINA], ["auto"], _speeds(6, 20), tolerance=1e-6)  # fmt: skip
 
@@ -289,7 +291,7 @@ def _undriven() -> Iterator[Group]:
 
 def _plane() -> Iterator[Group]:
     """Two degrees of freedom, no memory."""
-    yield _group("W3", W3, [COULOMB], [*EVERY, MOREAU, RK4], _speeds(0.5, 25, 60))
+    yield _group("W3", W3, [COULOMB], [*EVERY, MOREAU, RK4], _speeds(0.5, 25, 60), deep=True)
     yield _group("W3, a curve", W3, [COULOMB], ["auto"], {"scene.belt_speed": {"start": 5, "stop": 60, "num": 6}},
                  tolerance=1e-6)  # fmt: skip
     yield _group("W3 at rest", W3, [COULOMB], ["auto", "mdsm", MOREAU], _speeds(0))
@@ -345,9 +347,9 @@ def _bristles() -> Iterator[Group]:
 def _memory() -> Iterator[Group]:
     """Bodies on the laws of plugins/."""
     yield _group("on elements", HEAVY, [MAXWELL, ONE_ELEMENT], ["auto", "exact", "mdsm"], _speeds(1, 8),
-                 tolerance=1e-6)  # fmt: skip
+                 tolerance=1e-6, deep=True)  # fmt: skip
     yield _group("on elements, marched", HEAVY, [ONE_ELEMENT], [{"kind": "march", "steps": 4096, "label": "rk4"},
-                 SDIRK2], _speeds(5), tolerance=1e-2)  # fmt: skip
+                 SDIRK2], _speeds(5), tolerance=1e-2, deep=True)  # fmt: skip
     across = {"transverse": {"natural_frequency": 2.0, "damping_ratio": 0.4, "load": {"amplitude": 8.0}}}
     yield _group("on elements in the plane", {**HEAVY, **across}, [MAXWELL], ["auto"], _speeds(5),
                  tolerance=1e-5, deep=True)  # fmt: skip

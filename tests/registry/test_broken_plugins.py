@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from profiles import deep, some
 
 from frictionlab import cli, registry
 from frictionlab.study.yaml_text import yaml_text
@@ -172,6 +173,7 @@ BROKEN = {
 }
 
 
+@some(3, "packages of every kind")
 @pytest.mark.parametrize("case", BROKEN)
 def test_a_broken_law_is_told_with_its_package_and_the_remedy_and_others_go_on(
     case: str, brings: Brings, capsys: pytest.CaptureFixture[str]
@@ -230,6 +232,7 @@ def test_a_package_with_a_sound_law_is_in_the_list_the_schema_and_studies(
     assert list(account["code"]) == ["some"]
 
 
+@deep("seconds of runs")
 def test_an_edited_package_is_noticed_and_a_removed_one_leaves_the_report(
     brings: Brings, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -317,6 +320,7 @@ def test_a_law_that_fails_with_the_parameters_given_is_told_before_the_run(
     )
 
 
+@deep("more kernels to compile")
 def test_an_error_only_some_speeds_meet_fails_those_points(
     brings: Brings, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -376,6 +380,7 @@ def listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], N
     return lambda text: Path("good.py").write_text(text) and None
 
 
+@deep("processes")
 def test_what_a_plugin_prints_never_mixes_with_the_result(listed: Callable[[str], None]) -> None:
     shouts = "print('loud'); import os; os.write(1, b'loud'); os.system('echo loud')"
     listed(good({HEAD: f"{HEAD}{shouts}\n", RETURN: f"{shouts}; {RETURN}"}))

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 from fake_methods import Fake, breaks_down, register
 from pages import Page, complaints
+from profiles import deep, some
 from run_folders import without_stamps
 
 import frictionlab as fl
@@ -108,6 +109,7 @@ ODD_STUDIES: dict[str, dict[str, Any]] = {
 }
 
 
+@some(2, "a page each")
 @pytest.mark.parametrize("name", ODD_STUDIES)
 def test_a_page_is_sound_html_that_needs_nothing_else_and_can_be_heard(name: str, ran: Runner) -> None:
     assert complaints(report(ran(**ODD_STUDIES[name]))) == []
@@ -172,6 +174,7 @@ def test_what_was_asked_is_there_in_words_symbols_and_numbers(ran: Runner) -> No
 ACROSS = {"natural_frequency": 1, "damping_ratio": 1, "load": {"unbalance": 1}}
 
 
+@some(1, "a run each")
 @pytest.mark.parametrize(
     ("scene", "words"),
     [
@@ -200,6 +203,7 @@ def test_there_is_a_line_for_every_curve_and_what_tells_it_apart(ran: Runner) ->
     ]
 
 
+@deep("seconds of reports")
 def test_the_measures_of_curves_are_shown_with_their_errors_where_there_are_any(ran: Runner) -> None:
     saved = ran()
     without_stamps(saved.folder)
@@ -301,6 +305,7 @@ def test_verdicts_are_those_of_the_run_and_failed_ones_come_first(ran: Runner) -
     assert "1 of 2 expectations FAILED" in page.all("header")[0].text
 
 
+@deep("seconds of reports")
 def test_many_expectations_are_folded_and_not_left_out_where_they_all_hold(ran: Runner) -> None:
     claims = [{"column": "error", "below": 1, "because": f"reason {n}"} for n in range(20)]
     held, failed = (
@@ -350,6 +355,7 @@ def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Ru
     ]
 
 
+@deep("seconds of reports")
 def test_a_table_of_few_points_is_shown_whole(ran: Runner) -> None:
     few = page_of(ran(**at_speeds(1.0, 2.0))).table("Every number found")
     many = page_of(ran("many"))
@@ -359,6 +365,7 @@ def test_a_table_of_few_points_is_shown_whole(ran: Runner) -> None:
     assert not any(caption.text == "Every number found" for caption in many.all("caption"))
 
 
+@deep("seconds of reports")
 def test_a_long_table_says_how_many_rows_it_leaves_to_the_file(
     ran: Runner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -511,6 +518,7 @@ def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
     assert not any(caption.text.startswith("Shape") for caption in without.all("caption"))
 
 
+@deep("seconds of reports")
 def test_a_length_that_was_left_out_is_told_as_taken(ran: Runner) -> None:
     body = {"mass": "3 kg", "stiffness": "300 N/m", "damping": "2 N s/m", "belt_speed": "0.1 m/s"}
     body |= {"belt_vibration": {"frequency": "10 rad/s", "displacement_amplitude": "10 mm"}}
@@ -551,6 +559,7 @@ def test_the_page_made_from_the_folder_is_the_page_made_by_the_run(ran: Runner) 
     assert report(read_saved(saved.folder)) == report(saved)
 
 
+@deep("seconds of reports")
 def test_a_page_takes_its_name_from_the_study_its_file_or_the_folder(tmp_path: Path, ran: Runner) -> None:
     saved = ran("a folder")
     file = tmp_path / "some_study.yaml"
@@ -594,6 +603,7 @@ def edited(folder: Path, old: str, new: str) -> None:
     study.write_text(study.read_text().replace(old, new))
 
 
+@some(3, "a folder each")
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
@@ -661,6 +671,7 @@ def three(ran: Runner) -> list[Saved]:
     ]
 
 
+@deep("seconds of reports")
 def test_an_index_has_a_row_for_each_study_that_leads_to_its_report(
     three: list[Saved], tmp_path: Path
 ) -> None:

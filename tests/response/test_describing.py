@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 from scipy.integrate import quad, solve_ivp
 
 import frictionlab as fl
@@ -121,6 +122,7 @@ def test_damped_bristles_are_those_of_another_integrator(ratio: float) -> None:
     assert 2.0 * found == pytest.approx(harmonic_of_bristles(law, 2.0, 2.0 * ratio), rel=1e-9)
 
 
+@deep("kernels of other counts")
 @pytest.mark.parametrize("size", [1e-3, 7e-3, 1e-2, 1.0])
 def test_sliders_in_parallel_add_up_whether_they_slip_or_not(size: float) -> None:
     for arguments in ((size, OMEGA), (size, OMEGA, 0.3 * size), ((size, 0.5j * size), OMEGA)):
@@ -129,6 +131,7 @@ def test_sliders_in_parallel_add_up_whether_they_slip_or_not(size: float) -> Non
         assert whole == pytest.approx(sum(parts), rel=1e-9)
 
 
+@deep("kernels of other counts")
 def test_straight_slip_in_the_plane_meets_what_it_meets_along_the_belt() -> None:
     for law in (COULOMB, DAHL, JENKINS, MAXWELL):
         along = fl.describing_function(law, 0.05, OMEGA)

@@ -10,6 +10,7 @@ import pytest
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from maxwell_slip import MaxwellSlip
 from memory_laws import AGEING
+from profiles import deep, some
 from rate_and_state import RateAndState
 from scipy.integrate import solve_ivp
 from scipy.optimize import newton
@@ -134,8 +135,14 @@ def test_elasto_plastic_bristles_in_steady_sliding_are_those_of_lugre(speed: flo
         assert fl.impedance(law, speed, [0.0, 1.0, 50.0]) == pytest.approx(exact, rel=1e-9)
 
 
-@pytest.mark.parametrize("law", [LUGRE, ELASTO_PLASTIC, AGEING])
-@pytest.mark.parametrize("across", [False, True])
+@pytest.mark.parametrize(
+    ("law", "across"),
+    [
+        *((law, across) for law in (LUGRE, ELASTO_PLASTIC) for across in (False, True)),
+        (AGEING, False),
+        pytest.param(AGEING, True, marks=deep("more kernels to compile")),
+    ],
+)
 def test_it_is_the_answer_of_the_integrated_law_to_a_small_vibration(law: Any, across: bool) -> None:
     sizes, omega = 4e-3 * 0.5 ** np.arange(4), 1.7
     if across:
@@ -153,6 +160,7 @@ def test_it_is_the_answer_of_the_integrated_law_to_a_small_vibration(law: Any, a
     assert fl.impedance(law, SPEED, omega, across=across) == pytest.approx(left[0], abs=1e-9)
 
 
+@some(1, "seconds of maps")
 @pytest.mark.parametrize("law", [LUGRE, ELASTO_PLASTIC, fl.Stribeck(mu_kinetic=0.3, mu_static=0.4)])
 def test_steady_sliding_is_lost_where_friction_feeds_what_the_dashpot_takes(law: Any) -> None:
     load = 2.0
@@ -206,6 +214,7 @@ def multipliers(scene: fl.Scene, law: Any, time: float) -> Any:
     return np.linalg.eigvals(np.column_stack([(after(way) - after(-way)) / 2e-4 for way in ways]))
 
 
+@deep("seconds of maps")
 def test_impedance_and_body_tell_whether_steady_sliding_is_stable() -> None:
     """By Nyquist's criterion, and by the characteristic equation that multipliers above differences' noise obey."""
     draw, stable = np.random.default_rng(5), []

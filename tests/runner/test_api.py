@@ -9,6 +9,7 @@ import math
 import os
 import pickle
 import shutil
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
@@ -20,6 +21,7 @@ import pandas as pd
 import pytest
 from fake_methods import Another, Fake, breaks_down, faked, is_broken, is_wrong, register
 from pandas.testing import assert_frame_equal
+from profiles import deep
 from run_folders import without_stamps
 
 import frictionlab as fl
@@ -34,7 +36,7 @@ from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.solve import solve
 from frictionlab.study import load_study, parse_study
 
-Trouble = Callable[[dict[float, Callable[[], None]]], None]
+Trouble = Callable[[dict[float, Callable[[], object]]], None]
 
 
 @pytest.fixture(autouse=True)
@@ -260,7 +262,7 @@ def test_the_folder_holds_one_row_per_curve_with_its_shape(tmp_path: Path) -> No
     plan = study(methods=["exact"], sweep=MANY, expect=expect)
     done = fl.run(plan, out=tmp_path / "out")
     written = tmp_path / "out" / "curves.csv"
-    read = pd.read_csv(written)
+    read = pd.read_csv(written, dtype={"shape_area": str})
 
     assert read["scene.drive.frequency"].tolist() == [1.0, 1.5]
     assert read["shape"].fillna("").tolist() == ["", "convex"]
@@ -268,7 +270,7 @@ def test_the_folder_holds_one_row_per_curve_with_its_shape(tmp_path: Path) -> No
         read["reason"].fillna("").tolist()[0]
         == "the curve ends at belt speed 40, below the end of reversal, 50"
     )
-    assert read["shape_area"].tolist()[1] == done.curves["shape_area"].tolist()[1]
+    assert float(read["shape_area"].tolist()[1]) == done.curves["shape_area"].tolist()[1]
     assert [verdict.passed for verdict in done.verdicts] == [True]
 
     text = written.read_bytes()
@@ -316,6 +318,7 @@ def test_no_method_is_loaded_where_every_point_is_finished(tmp_path: Path, monke
     assert fl.run(fresh, out=tmp_path / "out").computed == 0
 
 
+@deep("seconds of runs")
 def test_a_run_that_dies_loses_nothing_that_came_back(tmp_path: Path) -> None:
     slow, came = study(methods=[{"kind": "fake", "pause": 0.12}], sweep=MANY), [0]
 
@@ -333,11 +336,16 @@ def test_a_run_that_dies_loses_nothing_that_came_back(tmp_path: Path) -> None:
     assert fl.run(slow, out=tmp_path / "out", existing="replace").computed == 800
 
 
-def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(tmp_path: Path) -> None:
+def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(
+    tmp_path: Path, trouble: Trouble
+) -> None:
     def stop(done: int, total: int, _left: float) -> None:
         if done:
+            stopped.set()
             raise KeyboardInterrupt
 
+    stopped = threading.Event()
+    trouble({40.0: lambda: stopped.wait(60.0)})
     slow = study(methods=[{"kind": "fake", "pause": 0.05}], sweep=MANY)
     with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
         fl.run(slow, out=tmp_path / "out", executor=pool, progress=stop)

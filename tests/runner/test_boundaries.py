@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import deep
 from scipy.integrate import simpson
 from scipy.optimize import brentq
 
@@ -45,6 +46,7 @@ def area(load: float, frequency: float) -> float:
     return float(2.0 * simpson((rise - np.sin(angle)) * np.cos(angle), x=angle))
 
 
+@deep("seconds of roots")
 def test_random_places_are_where_bisections_of_curves_solved_densely_are() -> None:
     found = fl.run(study()).boundaries
 
@@ -69,6 +71,7 @@ def test_a_place_is_the_root_of_the_measure_to_a_millionth() -> None:
         assert told["scene.normal_load"] == pytest.approx(brentq(measured, 5.0, 15.0, xtol=1e-9), abs=1e-6)
 
 
+@deep("seconds of roots")
 def test_the_end_of_reversal_of_a_law_that_falls_is_found_sharply() -> None:
     stribeck = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=20)
     curves = [*fl.Study.of(SCENE, stribeck, sweep={"scene.belt_speed": SPEEDS}).curves()]
@@ -83,6 +86,7 @@ def test_the_end_of_reversal_of_a_law_that_falls_is_found_sharply() -> None:
     assert 0.0 < error < 4e-5 * end
 
 
+@deep("seconds of roots")
 def test_lines_over_linked_numbers_and_over_friction_are_those_of_the_number_they_stand_for() -> None:
     at = {"scene.drive.frequency": SWEEP["scene.drive.frequency"], "scene.belt_speed": SPEEDS}
     both = {"scene.normal_load": [20.0, 10.0, 4.0], "friction": [0.1, 0.4, 1.5]}
@@ -101,6 +105,7 @@ def test_lines_over_linked_numbers_and_over_friction_are_those_of_the_number_the
         np.testing.assert_allclose(np.sort(each), np.sort(forces[0]), rtol=1e-6)
 
 
+@deep("seconds of roots")
 def test_at_resonance_the_area_is_zero_where_friction_is_a_third_of_the_load() -> None:
     # the exact value, .331 of the load, is of many points; those few have an error that covers it
     found = fl.run(
@@ -111,6 +116,7 @@ def test_at_resonance_the_area_is_zero_where_friction_is_a_third_of_the_load() -
     assert at["scene.normal_load"] * 0.4 / 10.0 == pytest.approx(0.331, abs=1e-3)
 
 
+@deep("seconds of roots")
 def test_lines_are_kept_in_a_file_read_again_and_drawn(tmp_path: Path) -> None:
     for _ in range(2):
         done = with_boundaries(fl.run(study(), tmp_path / "out"))
@@ -118,6 +124,7 @@ def test_lines_are_kept_in_a_file_read_again_and_drawn(tmp_path: Path) -> None:
     assert len(done.boundaries) == len((tmp_path / "out" / "boundaries.csv").read_text().splitlines()) - 1
 
 
+@deep("seconds of roots")
 def test_a_map_shows_the_lines_in_place_of_contours_of_its_grid() -> None:
     fine = {"scene.drive.frequency": {"start": 0.9, "stop": 1.1, "num": 5}}
     fine |= {"scene.normal_load": {"start": 5, "stop": 15, "num": 5}, "scene.belt_speed": SPEEDS}
@@ -161,6 +168,7 @@ WEAK = 1e-4
 """Normal load so small that the motion is that without friction."""
 
 
+@deep("seconds of roots")
 @pytest.mark.parametrize("across", [None, (0.01, 0.0), (1.5, 70.0), (300.0, 0.0)])
 def test_weak_friction_leaves_the_area_of_the_motion_without_it(across: tuple[float, float] | None) -> None:
     # from omega_r = 0, a mass alone, to infinity, where the body moves along the belt: 1 - 4/pi at every frequency

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pandas.testing import assert_frame_equal
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.quantities import Floats
@@ -107,6 +108,7 @@ def test_a_run_is_near_its_curves_everywhere(chosen: fl.Study) -> None:
     assert one == other
 
 
+@deep("seconds of runs")
 def test_the_same_run_again_computes_nothing(tmp_path: Path) -> None:
     first = api.run(STUDY, out=tmp_path / "run")
     assert first.computed == len(first.table)
@@ -123,6 +125,7 @@ def test_the_same_run_again_computes_nothing(tmp_path: Path) -> None:
     assert "within: 0.001" in (tmp_path / "run" / "study.yaml").read_text()
 
 
+@deep("seconds of runs")
 def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -148,6 +151,7 @@ def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
     assert_frame_equal(on.table, whole)
 
 
+@deep("seconds of runs")
 def test_what_is_kept_of_orbits_belongs_to_its_row(tmp_path: Path) -> None:
     kept = STUDY | {"keep": {"orbit": 4, "harmonics": 2}, "laws": LAWS[:1]}
     done = api.run(kept, out=tmp_path / "run")

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
@@ -66,6 +67,7 @@ def test_a_group_asks_for_its_columns_and_all_for_every_one() -> None:
     assert every.study.resolved()["columns"] == ["all"]
 
 
+@deep("all columns each")
 @pytest.mark.parametrize(("scene", "method"), [(LINE, "exact"), (PLANE, "shooting")])
 def test_a_column_alone_is_the_one_of_the_whole_row(scene: dict[str, Any], method: str) -> None:
     whole = fl.run(study(scene=scene, methods=[method], columns="all")).table
@@ -210,6 +212,7 @@ def test_the_schema_knows_the_columns() -> None:
 # --- folders and the command --------------------------------------------------------------------------------------
 
 
+@deep("seconds of runs")
 def test_a_folder_with_other_columns_is_used_where_it_has_those_asked_for(tmp_path: Path) -> None:
     few = fl.run(study(columns=["floquet"]), tmp_path)
     again = fl.run(study(columns=["floquet"]), tmp_path)
@@ -225,6 +228,7 @@ def test_a_folder_with_other_columns_is_used_where_it_has_those_asked_for(tmp_pa
         fl.run(study(tolerance=1e-6), tmp_path)
 
 
+@deep("seconds of runs")
 def test_the_command_finds_the_columns_of_its_option(tmp_path: Path, capsys: Any) -> None:
     file, out = tmp_path / "study.yaml", tmp_path / "out"
     file.write_text(yaml_text(study()))

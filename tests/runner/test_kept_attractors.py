@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
@@ -54,6 +55,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@deep("seconds of maps")
 def test_every_state_is_a_row_per_point_and_only_of_methods_that_follow_motions(ran: Path) -> None:
     table = pd.read_csv(ran / "out" / "attractors.csv")
 
@@ -65,6 +67,7 @@ def test_every_state_is_a_row_per_point_and_only_of_methods_that_follow_motions(
     assert states["point"].max().tolist() == states["period"].max().tolist() == [3, 2, 3, 2, 2]
 
 
+@deep("seconds of maps")
 def test_the_figure_shows_every_period_in_colour_and_in_grey(ran: Path) -> None:
     picture = plt.imread(ran / "out" / "figures" / "bifurcation.png")[..., :3]
     grey = picture @ [0.299, 0.587, 0.114]
@@ -74,6 +77,7 @@ def test_the_figure_shows_every_period_in_colour_and_in_grey(ran: Path) -> None:
     assert (grey < 0.55).mean() > 0.005
 
 
+@deep("seconds of maps")
 def test_the_report_tells_the_periods(ran: Path) -> None:
     page = (ran / "out" / "report.html").read_text()
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pandas.testing import assert_frame_equal
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.methods import under_way
@@ -62,6 +63,7 @@ class Disk:
             fl.run(given, out=out)
 
 
+@deep("seconds of runs")
 @pytest.mark.parametrize("name", STUDIES)
 def test_an_interrupted_run_makes_no_call_again_and_comes_to_the_same_numbers(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -6,11 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-from profiles import DEEP
+from profiles import DEEP, deep
 
 KILLS = 50 if DEEP else 1
 
 
+@deep("processes that are killed")
 def test_a_killed_run_is_gone_on_with_to_the_same_files_and_none_besides() -> None:
     script = Path(__file__).parents[1] / "killed_runs.py"
     done = subprocess.run([sys.executable, str(script), str(KILLS)], capture_output=True, text=True)

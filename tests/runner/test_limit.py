@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import threading
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -29,16 +30,24 @@ def released(monkeypatch: pytest.MonkeyPatch) -> Any:
     event.set()
 
 
-def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(released, monkeypatch, tmp_path):
-    allowed = []
+@pytest.fixture
+def allowed(released: Any, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, float]]:
+    """Points that are solved together and the seconds they may take, which those with belt speed 6 exceed."""
+    told = list[tuple[int, float]]()
 
-    def by_the_clock(seconds: float, work: Any, chunk: Chunk) -> Any:
-        allowed.append((len(chunk.rows), seconds))
-        if not released.is_set() and any(scene.belt_speed == 6.0 for scene in chunk.scenes):
+    def by_the_clock(seconds: float, work: Any, given: Chunk | Sequence[Chunk]) -> Any:
+        chunks = [given] if isinstance(given, Chunk) else given
+        speeds = [scene.belt_speed for chunk in chunks for scene in chunk.scenes]
+        told.append((len(speeds), seconds))
+        if not released.is_set() and 6.0 in speeds:
             raise OverLimit
-        return work(chunk)
+        return work(given)
 
     monkeypatch.setattr(limit, "within", by_the_clock)
+    return told
+
+
+def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(released, allowed, tmp_path):
     done = fl.run(STUDY, out=tmp_path)
 
     assert allowed == [(5, 0.3), (2, 0.3), (3, 0.3), (1, 0.3), (2, 0.3)]
@@ -78,11 +87,12 @@ def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypa
     assert allowed == [0.3 * 50 / 10]
 
 
-def test_curves_that_are_sent_together_are_answered_but_for_the_point_over_the_limit(released, monkeypatch):
+def test_curves_that_are_sent_together_are_answered_but_for_the_point_over_the_limit(allowed, monkeypatch):
     monkeypatch.setattr("frictionlab.runner.chunks.LONG_STUDY", 15)
     sweep = {"scene.normal_load": [1.0, 2.0, 3.0], "scene.belt_speed": [4, 5, 6, 7, 8]}
     done = fl.run(STUDY | {"sweep": sweep, "limit": {"seconds_per_point": 0.2}})
 
+    assert allowed[0] == (15, pytest.approx(3 * 0.2))
     assert done.table["status"].tolist() == ["ok", "ok", "killed", "ok", "ok"] * 3
     assert done.table["mean_friction"].notna().sum() == 12
 

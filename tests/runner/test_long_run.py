@@ -12,11 +12,12 @@ import numpy as np
 import pandas as pd
 import pytest
 from pandas.testing import assert_frame_equal
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.results import thinned
-from frictionlab.runner import api, gathering, saved, study_run
+from frictionlab.runner import api, gathering, saved, study_run, workforce
 from frictionlab.runner.saved import read_saved
 from frictionlab.study import parse_study
 from frictionlab.study.yaml_text import yaml_text
@@ -57,6 +58,7 @@ ORDERS = [
 ]
 
 
+@deep("seconds of runs")
 @pytest.mark.parametrize("order", ORDERS)
 def test_its_files_are_those_of_a_short_run(
     order: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
@@ -83,6 +85,7 @@ def _timeless(table: pd.DataFrame) -> pd.DataFrame:
     return table.drop(columns="seconds", errors="ignore")
 
 
+@deep("seconds of runs")
 def test_harmonics_of_a_long_run_are_those_of_a_short_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
 ) -> None:
@@ -99,6 +102,7 @@ def test_harmonics_of_a_long_run_are_those_of_a_short_one(
     assert_frame_equal(again.harmonics, long.harmonics)
 
 
+@deep("seconds of runs")
 def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Path) -> None:
     fl.run(study(), out=tmp_path / "run")
     assert not (tmp_path / "run" / "results.csv").exists()
@@ -110,6 +114,7 @@ def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Pat
     assert not (tmp_path / "run" / "results.csv").exists()
 
 
+@deep("seconds of runs")
 def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Path) -> None:
     first = fl.run(study(), out=tmp_path / "run")
     again = fl.run(study(), out=tmp_path / "run")
@@ -126,6 +131,7 @@ def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Pat
     assert_frame_equal(other.table, first.table, check_exact=True)
 
 
+@deep("seconds of runs")
 def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
     short_pieces: None, tmp_path: Path
 ) -> None:
@@ -143,24 +149,30 @@ def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
     assert_frame_equal(mended.table, fewer.table, check_exact=True)
 
 
-def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Path) -> None:
-    def stop(done: int, total: int, _left: float) -> None:
-        if done:
-            raise KeyboardInterrupt
+def test_a_long_run_that_is_interrupted_goes_on(
+    short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def collect_one(left: Any, *others: Any) -> None:
+        collect(list(left)[:1], *others)
+        raise KeyboardInterrupt
 
-    with pytest.raises(api.Interrupted) as caught:
-        fl.run(study(), out=tmp_path / "run", progress=stop)
+    collect = workforce.collect
+    with monkeypatch.context() as patch:
+        patch.setattr(workforce, "collect", collect_one)
+        with pytest.raises(api.Interrupted) as caught:
+            fl.run(study(), out=tmp_path / "run")
     stopped = caught.value.run
     reasons = stopped.table.loc[stopped.table["status"] == "killed", "reason"]
     again = fl.run(study(), out=tmp_path / "run")
 
-    assert 0 < stopped.counts["killed"] < 320
+    assert stopped.counts == {"killed": 280, "ok": 40}
     assert set(reasons) == {"interrupted"}
     assert stopped.curves.empty
     assert again.computed == 320 - stopped.computed
     assert again.counts == {"ok": 160, "refused": 160}
 
 
+@deep("seconds of figures")
 def test_the_page_and_the_figures_show_some_and_tell_of_all(
     short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -191,6 +203,7 @@ def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
     assert (np.diff(rows) > 0).all()
 
 
+@deep("seconds of runs")
 def test_shown_curves_of_many_make_a_grid_of_their_own() -> None:
     sweep = {
         "laws.static.mu_static": [0.5, 0.6, 0.7],
@@ -215,6 +228,7 @@ def test_shown_curves_of_many_make_a_grid_of_their_own() -> None:
         assert len(own) == 5 * np.prod([len(each) for each in values])
 
 
+@deep("seconds of runs")
 def test_a_long_run_keeps_the_memory_of_laws_that_come_later(tmp_path: Path, short_pieces: None) -> None:
     laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 4}]
     wanted = study(laws=laws, methods=["shooting"], expect=[])

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.mistakes.notes import WrongValues
@@ -334,6 +335,7 @@ def _answered(given: tuple[fl.Scene, Any]) -> fl.SteadyState:
     return fl.steady_state(*given, "mdsm")
 
 
+@deep("processes")
 def test_states_and_laws_of_files_go_to_other_processes_and_come_back(tmp_path: Path) -> None:
     file = tmp_path / "told.py"
     file.write_text(LAW_FILE)

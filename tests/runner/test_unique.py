@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.results.state import SteadyState
@@ -88,6 +89,7 @@ def test_other_states_are_told() -> None:
     assert "unique: " not in chosen.model
 
 
+@deep("seconds of maps")
 def test_nothing_is_said_where_nothing_was_asked() -> None:
     assert state(COULOMB, "mdsm", belt_speed=5.0).unique == ""
     assert state(COULOMB, "march").unique == ""

@@ -35,6 +35,7 @@ SCRIPT = Path(__file__).parents[1] / "killed_workers.py"
 DOCS = Path(__file__).parents[2] / "docs"
 
 
+@deep("processes that are killed")
 @pytest.mark.parametrize("way", ["processes", "cluster", pytest.param("parts", marks=deep("six processes"))])
 def test_workers_that_are_killed_change_nothing(way: str) -> None:
     if way == "cluster":
@@ -169,6 +170,7 @@ for task in tasks:
 """
 
 
+@deep("processes")
 def test_the_job_array_of_the_docs_solves_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (DOCS / "cost.md").read_text()
     (script,) = re.findall(r"<!-- slurm -->\n```sh\n(.*?)```", text, re.DOTALL)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from profiles import DEEP
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
@@ -118,11 +118,10 @@ def test_nothing_is_ever_replaced(capsys: pytest.CaptureFixture[str]) -> None:
     assert file.read_text() == "mine"
 
 
+@deep("the whole battery")
 @pytest.mark.parametrize("memory", MEMORIES)
 def test_a_new_law_passes_the_test_it_comes_with(memory: str) -> None:
     pytest.importorskip("frictionlab.testing")
-    if not DEEP:
-        pytest.skip("the whole battery runs in the deep profile")
     folder = law_of(memory).parent
     done = ran([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"], folder)
 

@@ -162,7 +162,8 @@ def in_units(tree: dict[str, Any], units: tuple[float, float, float]) -> dict[st
 def test_every_column_in_si_units_has_the_unit_its_name_ends_in(body: dict[str, Any]) -> None:
     body = body | {"gravity_m_per_s2": 9.81}
     units = (0.45359237, 0.3048, 60.0)  # pound, foot, minute
-    si, other = (fl.steady_state(si_scene(**tree), LAW).si for tree in (body, in_units(body, units)))
+    both = (fl.steady_state(si_scene(**tree), LAW, tolerance=1e-12) for tree in (body, in_units(body, units)))
+    si, other = (state.si for state in both)
 
     assert set(si) == set(SI)
     for name in (name for name in SI if "error" not in name):
@@ -234,7 +235,7 @@ def test_a_law_given_in_si_units_is_converted_for_the_method_and_kept_in_the_tab
     wanted = fl.steady_state(plain, there, tolerance=1e-9)
 
     assert told["status"] == wanted.status == "ok"
-    assert told["mean_friction"] == pytest.approx(wanted.mean_friction, abs=1e-10)
+    assert abs(told["mean_friction"] - wanted.mean_friction) <= told["error"] + wanted.error
     assert (told["law.stribeck_speed"], told["law.nondimensional.stribeck_speed"]) == (
         0.05,
         pytest.approx(2.5),

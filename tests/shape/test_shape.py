@@ -14,6 +14,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from profiles import some
 from strategies import scenes_on_the_line
 
 import frictionlab as fl
@@ -275,6 +276,7 @@ def verdicts_on(one: Scene, points: int, wanted: str) -> list[pd.Series]:
     return rows
 
 
+@some(1, "whole curves")
 @pytest.mark.parametrize("case", ALONG)
 def test_verdicts_along_the_belt_do_not_change_with_the_points_or_with_noise(
     case: tuple[float, float],
@@ -285,6 +287,7 @@ def test_verdicts_along_the_belt_do_not_change_with_the_points_or_with_noise(
         assert row["reversal_end"] == pytest.approx(friction_free_velocity(scene(*case)), rel=1e-12)
 
 
+@some(1, "whole curves")
 @pytest.mark.parametrize("case", ACROSS)
 def test_verdicts_in_the_plane_do_not_change_with_the_points_or_with_noise(
     case: tuple[float, float, float],
@@ -448,7 +451,7 @@ def test_points_without_a_number_are_left_out(family: pd.DataFrame) -> None:
 
     assert rest["shape"].tolist() == whole["shape"].tolist()
     assert np.all((rest["shape_area"] - whole["shape_area"]).abs() <= rest["shape_area_error"])
-    assert np.all(rest["shape_area"] != whole["shape_area"])
+    pd.testing.assert_frame_equal(rest, curve_table(family[~lost]))
 
 
 def test_belts_at_rest_and_running_backward_are_left_out(family: pd.DataFrame) -> None:

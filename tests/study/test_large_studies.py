@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from profiles import deep
 from pydantic import model_validator
 
 import frictionlab as fl
@@ -125,6 +126,7 @@ def laws(number: int, **changes: Any) -> list[dict[str, Any]]:
     return [{"kind": "coulomb", "mu": 0.4, "label": f"l{k}", **changes} for k in range(number)]
 
 
+@deep("compares times")
 @pytest.mark.parametrize(
     "tree",
     [
@@ -145,6 +147,7 @@ def test_twice_as_many_mistakes_are_told_in_twice_the_time(tree: Callable[[int],
     assert calls(tree(200)) < 2.3 * calls(tree(100))
 
 
+@deep("thousands of mistakes")
 def test_of_many_mistakes_the_first_fifty_are_shown_and_the_others_counted(tmp_path: Path) -> None:
     file = tmp_path / "study.yaml"
     wrong = "".join(f"key{k}: 1\n" for k in range(3000))

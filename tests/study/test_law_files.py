@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli, registry
@@ -185,6 +186,7 @@ def test_a_copy_never_takes_the_place_of_a_file_of_ones_own() -> None:
     assert Path("laws/my_law.py").read_text() == "mine = 1"
 
 
+@deep("seconds of runs")
 def test_a_report_needs_no_law_and_runs_no_code_of_the_folder() -> None:
     path = study(
         law=f"{LAW}\nwith open('marks', 'a') as file:\n    file.write('x')\n",

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import some
 from study_mistakes import EDITS, GOOD, HINTS
 
 from frictionlab import registry
@@ -543,6 +544,7 @@ def _dotted_keys(tree: dict[str, Any]) -> set[str]:
     return set(tree) | inner
 
 
+@some(6, "studies of every kind")
 @pytest.mark.parametrize(
     "file",
     sorted(STUDIES.rglob("*.yaml")),  # some bring a plugin's law, which is installed here, too

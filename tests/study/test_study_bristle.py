@@ -15,6 +15,7 @@ from fake_methods import Fake
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from profiles import some
 from strategies import BRISTLE_LAWS, sizes
 
 import frictionlab as fl
@@ -140,6 +141,7 @@ def _body_of(scales: Units) -> dict[str, Any]:
     }
 
 
+@some(2, "a law each")
 @pytest.mark.parametrize("kind", BRISTLE_LAWS)
 @given(units, st.data())
 @settings(max_examples=15)
@@ -396,6 +398,7 @@ def mean_dahl(presliding: float) -> Callable[[float], float]:
     return mean
 
 
+@some(1, "whole curves")
 @pytest.mark.parametrize(
     ("presliding", "area", "verdict"),
     [(0.1, -0.193, "convex"), (1.0, 0.141, "concave"), (3.0, 0.239, "concave")],

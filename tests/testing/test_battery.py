@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import pytest
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 from pydantic import Field
 
 from frictionlab.cli import main
@@ -98,6 +99,7 @@ def test_a_law_that_never_answers_is_told_within_the_time_limit_and_asked_no_mor
     assert report.outcome("oddness").reason == "answers failed: the law cannot be asked"
 
 
+@deep("hundreds of draws")
 @pytest.mark.parametrize("law", [LuGre, ElastoPlastic])
 def test_laws_are_drawn_with_every_parameter_they_may_be_given(law: type[FrictionLaw]) -> None:
     seen: set[str] = set()
@@ -137,6 +139,7 @@ class Leaking(MaxwellSlip):
         return super().rate(v, memory, k) + 0.01 * v
 
 
+@deep("seconds of a battery")
 def test_a_slider_that_meets_its_limit_between_two_steps_keeps_within_it_and_one_that_leaks_does_not() -> (
     None
 ):
@@ -181,6 +184,7 @@ class Spring(BristleLaw):
         return self.mu * z / self.limit
 
 
+@deep("a battery each")
 @pytest.mark.parametrize("law", [Plain, Spring])
 def test_what_a_law_does_not_declare_is_skipped_with_the_name_of_the_declaration(
     law: type[FrictionLaw],

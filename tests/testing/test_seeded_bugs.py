@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from broken_laws import COMPILED, QUICK
 from broken_laws.case import OF_EVERY_LAW, Case
-from profiles import deep
+from profiles import deep, some
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing import CHECKS, check_law, running
@@ -33,11 +33,13 @@ def caught(law: type[FrictionLaw], case: Case, examples: int | None = None) -> s
     return outcome.counterexample
 
 
+@some(13, "a check each")
 @pytest.mark.parametrize("case", QUICK, ids=str)
 def test_a_seeded_bug_is_caught_by_the_check_meant_for_it(case: Case) -> None:
     assert caught(case.law, case)
 
 
+@some(4, "a check each")
 @pytest.mark.parametrize("case", TWINS, ids=lambda case: f"{case.twin.__name__}-{case.check}")
 def test_the_law_without_the_bug_passes_that_check(case: Case) -> None:
     assert caught(case.twin, case, 12) == ""

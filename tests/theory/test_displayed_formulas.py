@@ -305,7 +305,7 @@ LAWS = [
         "jenkins",
         lambda: (
             v - (z / abs(z)) * (z * v.conjugate()).real / abs(z),
-            jenkins.rate(v, mu / sigma_0 * z / abs(z)),
+            jenkins.rate(v, (1.0 + 1e-9) * mu / sigma_0 * z / abs(z)),
         ),
     ),
     Formula(

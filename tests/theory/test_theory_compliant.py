@@ -44,7 +44,7 @@ def test_stiff_dahl_friction_is_coulombs_but_its_stiffness_fades_slowly(a: float
 def test_soft_dahl_friction_is_a_spring_that_loses_the_cube_of_the_amplitude(a: float) -> None:
     found = complex(theory.dahl_describing_function(a))
 
-    assert found.real == pytest.approx(1 - 3 * a**2 / 8, abs=a**4 + 1e-15)
+    assert found.real == pytest.approx(1 - 3 * a**2 / 8, abs=a**4 + 1e-14)
     assert theory.dahl_loop_area(a) == pytest.approx(4 / 3 * a**3 * (1 - 2 * a**2 / 5), rel=a**4 + 1e-14)
     assert found.imag == pytest.approx(4 / (3 * math.pi) * a, rel=a**2 + 1e-14)
 
@@ -53,7 +53,7 @@ def test_jenkins_friction_is_a_spring_until_its_slider_moves_and_coulombs_far_be
     a = np.logspace(2, 8, 50)
     found = theory.jenkins_describing_function(a)
 
-    assert complex(theory.jenkins_describing_function(0.7)) == 1.0
+    assert complex(theory.jenkins_describing_function(0.7)) == pytest.approx(1.0, abs=1e-14)
     assert complex(theory.jenkins_describing_function(2.0)) == pytest.approx(0.5 + 1j / math.pi, rel=1e-15)
     np.testing.assert_allclose(found.real * a, 16 / (3 * np.pi) / np.sqrt(a), rtol=1 / a[0])
     np.testing.assert_allclose(found.imag * a, 4 / np.pi * (1 - 1 / a), rtol=1e-14)
@@ -98,7 +98,7 @@ def one_period(law: Dahl | Jenkins, ratio: float) -> float:
 
     back, forth = float(theory.slip_back_and_forth(ratio)[0]), float(theory.slip_back_and_forth(ratio)[1])
     z, before = law.largest_deflection(), math.inf
-    while abs(z - before) > 1e-16 * law.largest_deflection():
+    while abs(z - before) > 1e-15 * law.largest_deflection():
         z, before = law.deflected(law.deflected(z, -back), forth), z
     total = 0.0
     for low, high, side in legs:
@@ -152,7 +152,7 @@ def test_a_spring_whose_slider_never_slips_back_has_its_mean_in_closed_form(
     assert theory.mean_soft_jenkins(ratio, presliding) == pytest.approx(wanted, abs=2e-6)
     assert theory.mean_soft_jenkins(-ratio, presliding) == -theory.mean_soft_jenkins(ratio, presliding)
     assert math.isnan(float(theory.mean_soft_jenkins(0.05, 0.5)))
-    assert theory.mean_soft_jenkins(1.2, 0.5) == 1.0
+    assert theory.mean_soft_jenkins(1.2, 0.5) == pytest.approx(1.0, abs=1e-14)
     back = float(theory.slip_back_and_forth(0.3)[0])
     assert math.isnan(float(theory.mean_soft_jenkins(0.3, back / 2.01)))
     assert theory.mean_soft_jenkins(0.3, back / 1.99) < 1.0

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import some
 from random_scenes import draw
 from varying_scenes import draw_varying
 
@@ -105,6 +106,7 @@ def leg_signs(scene: Scene) -> tuple[int, ...]:
     return tuple(min(signs[i:] + signs[:i] for i in range(len(signs))))
 
 
+@some(1, "seconds of intervals")
 @pytest.mark.parametrize(
     ("scene", "low", "high"),
     [

@@ -12,6 +12,7 @@ from answered import with_columns
 from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import deep, some
 from resonance import at_resonance as scene
 from strategies import scenes_in_the_plane, scenes_on_the_line
 
@@ -57,6 +58,7 @@ def covered(answers, expected, known_to=1e-10):
 # --- against methods that step nothing ----------------------------------------------------------------------------
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize("figure", FIGURES, ids=str)
 def test_ten_points_of_every_figure_along_the_belt_agree_with_the_exact_method(figure):
     frequency, load = figure
@@ -68,6 +70,7 @@ def test_ten_points_of_every_figure_along_the_belt_agree_with_the_exact_method(f
     assert covered(answers, with_columns(Exact(), scenes, LAW, 1e-11).columns["mean_friction"])
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize("path", PLANAR, ids=lambda path: path.stem)
 def test_ten_points_of_every_figure_in_the_plane_agree_with_the_reference(path):
     table = np.genfromtxt(path, delimiter=",", names=True)[1:]
@@ -87,6 +90,7 @@ def test_ten_points_of_every_figure_in_the_plane_agree_with_the_reference(path):
     assert answers.columns["velocity_harmonic"] == pytest.approx(table["V1"], rel=2e-3)
 
 
+@deep("seconds of steps")
 @given(one=scenes_on_the_line(), theta=st.sampled_from([0.5, 1.0]))
 def test_the_error_of_moreau_covers_random_scenes_along_the_belt(one, theta):
     expected = with_columns(Exact(), [one], LAW, 1e-9)
@@ -172,6 +176,7 @@ def test_a_load_along_the_belt_alone_leaves_one_degree_of_freedom():
     assert abs(kicked.columns["mean_friction"] - line.columns["mean_friction"]) < 2e-4
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize(
     ("one", "steps"),
     [(scene(5.0), 400), (scene(5.0), 1000), (scene(0.5, drive=Drive(amplitude=2.5, frequency=0.5)), 4000)],
@@ -226,6 +231,7 @@ def test_the_period_of_leines_block_is_met_and_its_deflection():
     assert "no other start was tried" in answers.reason[0]
 
 
+@deep("seconds of steps")
 @pytest.mark.parametrize(
     ("smoothing", "width", "percent"),
     [("arctan", 1e-3, -5.86), ("arctan", 1e-4, -1.61), ("tanh", 1e-2, -5.99), ("tanh", 1e-3, -0.837)],
@@ -247,6 +253,7 @@ def test_two_level_friction_without_damping_has_the_period_of_its_closed_form(si
     assert answers.columns["mean_friction"][0] == pytest.approx(0.4 * side, abs=answers.columns["error"][0])
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize("stepper", ["moreau", "rk4", "smoothed"])
 def test_an_undriven_mass_on_a_belt_at_rest_stays_where_it_rests_from_the_default_start(stepper):
     one = Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=0.0)
@@ -266,6 +273,7 @@ def test_an_undriven_mass_that_comes_to_slide_steadily_has_no_period(damping):
 # --- prescribed slip ------------------------------------------------------------------------------------------------
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("width", [0.3, 0.01])
 def test_prescribed_slip_with_smoothed_friction_tells_its_bias(width):
     one = Scene(belt_speed=2.99, slip=Slip(velocity_amplitude=3.0, frequency=2.0))
@@ -273,6 +281,7 @@ def test_prescribed_slip_with_smoothed_friction_tells_its_bias(width):
     assert covered(answers, 0.4 * 2.0 / math.pi * math.asin(2.99 / 3.0))
 
 
+@deep("more kernels to compile")
 def test_prescribed_slip_in_the_plane_agrees_with_quadrature():
     one = Scene(
         belt_speed=0.7,
@@ -338,6 +347,7 @@ def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     assert covered(answers, of_14_periods)  # by shooting, which every start comes near
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize("start", [None, Initial(x=0.5)])
 def test_a_response_of_several_drive_periods_has_its_mean_over_all_of_them(start):
     one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.2, frequency=1.3), initial=start)
@@ -361,6 +371,7 @@ def test_falling_friction_has_one_answer_where_every_start_leads_to_it(speed, dr
     assert covered(answers, with_columns(Shooting(), [one], law, 1e-9).columns["mean_friction"])
 
 
+@deep("seconds of steps")
 def test_laps_that_only_the_steps_tell_apart_are_one_period():
     """Grids of times let these motions repeat every second or third lap alone, with means that hardly differ."""
     cases = [
@@ -381,6 +392,7 @@ def test_laps_that_only_the_steps_tell_apart_are_one_period():
         assert covered(answers, with_columns(Shooting(), [one], law, 1e-7).columns["mean_friction"])
 
 
+@deep("seconds of steps")
 def test_where_two_states_attract_both_are_told_and_the_given_start_decides():
     law = Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)
     quiet = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": Drive(amplitude=0.05, frequency=3.0)}

@@ -73,9 +73,9 @@ def solve(one, law, tolerance=1e-5, **keys):
     ("kind", "stepper", "planar"),
     [
         ("lugre", "exponential", False),
-        ("lugre", "sdirk2", False),
+        pytest.param("lugre", "sdirk2", False, marks=compiling),
         ("dupont", "exponential", False),
-        ("lugre", "exponential", True),
+        pytest.param("lugre", "exponential", True, marks=compiling),
         pytest.param("lugre", "rk4", False, marks=compiling),
         pytest.param("dahl", "exponential", True, marks=compiling),
         pytest.param("lugre", "sdirk2", True, marks=compiling),
@@ -91,6 +91,7 @@ def test_the_error_covers_the_reference(kind, stepper, planar):
         assert abs(answers.columns["mean_friction"][0] - float(row["mu_bar"])) <= error + KNOWN
 
 
+@deep("more kernels to compile")
 def test_given_steps_tell_their_error():
     row = rows_of("lugre", False)[0]
     for stepper, steps in (("exponential", 200), ("sdirk2", 100), ("rk4", 1000)):
@@ -101,6 +102,7 @@ def test_given_steps_tell_their_error():
         assert answers.columns["error"][0] <= 0.05
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("stepper", ["exponential", "rk4"])
 def test_prescribed_slip_agrees_with_the_exact_two_leg_map(stepper):
     with (REFERENCE / "rigid_kinematics.csv").open() as file:
@@ -113,6 +115,7 @@ def test_prescribed_slip_agrees_with_the_exact_two_leg_map(stepper):
         assert off <= answers.columns["error"][0] + 5e-9 <= 1.1e-7
 
 
+@deep("seconds of steps")
 def test_bristles_as_stiff_as_may_be_rub_like_coulomb_friction_under_a_prescribed_slip():
     one = Scene(belt_speed=0.5, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
     answers = solve(one, Dahl(mu=0.4, presliding_length=1e-9), 1e-6)
@@ -154,13 +157,17 @@ def order_of(stepper, grids, shifts, **case):
     return float(np.polyfit(-np.log(grids), np.log(errors), 1)[0])
 
 
-@pytest.mark.parametrize(("stepper", "order"), [("rk4", 4), ("exponential", 2), ("sdirk2", 2)])
+@deep("more kernels to compile")
+@pytest.mark.parametrize(
+    ("stepper", "order"), [("rk4", 4), ("exponential", 2), pytest.param("sdirk2", 2, marks=compiling)]
+)
 def test_slip_that_does_not_reverse_is_stepped_at_the_declared_order(stepper, order):
     soft = STEADY.model_copy(update={"presliding_length": 30.0})
     assert order_of(stepper, [200, 400, 800], 1, law=soft, belt_speed=60.0) == pytest.approx(order, abs=0.2)
 
 
-@pytest.mark.parametrize("stepper", STEPPERS)
+@deep("more kernels to compile")
+@pytest.mark.parametrize("stepper", ["rk4", "exponential", pytest.param("sdirk2", marks=compiling)])
 def test_where_slip_reverses_the_order_is_two(stepper):
     assert 1.6 <= order_of(stepper, [1600, 6400, 25_600], 6, belt_speed=5.0) <= 2.5
 
@@ -173,6 +180,7 @@ def slid(stepper, slip, h, steps, z=0.0):
     return stepped(stepper, FREE, steps, h, v=slip, z=z)[2]
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("speed", [0.3, 30.0])
 def test_rk4_is_stable_up_to_its_limit_and_not_beyond(speed):
     rest, limit = STEADY.presliding(), DECAY / STEADY.largest_rate(speed)
@@ -188,6 +196,7 @@ def test_the_exponential_stepper_ends_in_steady_slip_however_long_the_step(share
         assert z == pytest.approx(largest + (share - 1.0) * largest * math.exp(-3.0 * h), rel=1e-9)
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("share", [-1.0, 0.0, 0.9])
 def test_sdirk2_forgets_in_one_step_what_decays_a_million_times_faster(share):
     speed, largest = 30.0, STEADY.largest_deflection()
@@ -285,7 +294,7 @@ def test_small_moves_of_bristles_that_break_away_are_of_order_two():
 def test_forms_of_the_plane_differ_in_what_is_carried():
     z, v, h = complex(0.2, -0.1), complex(0.6, 0.8), 0.3
     line = compiled(moved, BREAKING)
-    each = complex(line(h, v.real, z.real), line(h, v.imag, z.imag))
+    each = pytest.approx(complex(line(h, v.real, z.real), line(h, v.imag, z.imag)), rel=1e-12)
     assert compiled(moved, BREAKING.model_copy(update={"planar": "per-axis"}))(h, v, z) == each
     along = complex(line(h, 1.0, z.real), 0.0)
     assert compiled(moved, BREAKING.model_copy(update={"planar": "rotated"}))(h, v, z) == pytest.approx(along)
@@ -305,6 +314,7 @@ def test_a_step_beyond_yield_is_brought_back_to_it(size, angle):
 # --- where there is no one number, or no answer -----------------------------------------------------------------
 
 
+@deep("more kernels to compile")
 def test_bristles_that_only_bend_keep_what_they_began_with():
     one = Scene(belt_speed=0.0, slip=Slip(velocity_amplitude=0.1, frequency=1.0))
     answers = solve(one, Dahl(mu=0.4, presliding_length=1.0, exponent=0.0))
@@ -318,6 +328,7 @@ NEARLY_BACK = TransverseSlip(velocity_amplitude=0.4508060362819711, phase=167.61
 BENT_BACK = TransverseSlip(velocity_amplitude=0.7020434447685906, phase=154.06421298900176)
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize(
     ("law", "belt_speed", "frequency", "across", "tolerance", "mean"),
     [
@@ -346,6 +357,7 @@ def test_corners_inside_steps_of_a_prescribed_slip_in_the_plane_are_in_the_error
     assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= tolerance
 
 
+@deep("more kernels to compile")
 def test_bristles_that_bend_back_within_a_step_after_a_jump_of_the_slip_are_in_the_error():
     """Halved steps agree as long as all of them are longer than that takes."""
     law, square = (
@@ -358,6 +370,7 @@ def test_bristles_that_bend_back_within_a_step_after_a_jump_of_the_slip_are_in_t
     assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= 1e-4
 
 
+@deep("seconds of steps")
 def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_error_says():
     law = Dahl(mu=0.4, presliding_length=0.1, exponent=2.0)
     found = solve(Scene(damping_ratio=0.1, normal_load=10.0, belt_speed=1.0), law, 1e-6).columns
@@ -371,6 +384,7 @@ def test_a_driven_mass_that_slips_one_way_is_as_far_from_steady_sliding_as_the_e
     assert 1e-4 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 0.01
 
 
+@deep("seconds of steps")
 def test_a_motion_on_bristles_that_never_repeats_has_a_mean_over_a_long_time():
     law = LuGre(
         mu_kinetic=0.2,
@@ -380,7 +394,8 @@ def test_a_motion_on_bristles_that_never_repeats_has_a_mean_over_a_long_time():
         damping=0.0,
         viscosity=0.0,
     )
-    one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.1, frequency=math.sqrt(2.0)))
+    drive, start = Drive(amplitude=0.1, frequency=math.sqrt(2.0)), {"x": 0.0}
+    one = scene(0.3, damping_ratio=0.01, drive=drive, initial=start)  # of several one may seem another state
     answers = solve(one, law, 1e-3)
     assert (answers.status, answers.error_kind) == (["ok"], ["statistical"])
     assert answers.columns["error"][0] < 5e-3  # of chaos: rounding alone changes it

@@ -45,6 +45,7 @@ def agree(one, other):
     return abs(one[0] - other[0]) <= one[1] + other[1]
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("belt_speed", [0.5, 5.0])
 def test_one_element_is_marched_to_the_mean_of_jenkins_friction(belt_speed):
     scene, jenkins = driven(belt_speed), Jenkins(mu=0.4, stiffness=4.0)
@@ -56,6 +57,7 @@ def test_one_element_is_marched_to_the_mean_of_jenkins_friction(belt_speed):
     assert agree(found, solve(Shooting(), scene, jenkins, 1e-8))
 
 
+@deep("more kernels to compile")
 def test_march_and_shooting_agree_about_three_elements():
     scene = driven(1.0)
 
@@ -70,6 +72,7 @@ def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
     assert agree(solve(March(), scene, law, 1e-6), solve(Shooting(), scene, law, 1e-8))
 
 
+@deep("more kernels to compile")
 def test_where_slip_comes_to_rest_an_age_is_refused_by_march_and_left_to_shooting():
     answers = with_columns(March(), [driven(5.0)], AGEING, 1e-3)
 
@@ -78,6 +81,7 @@ def test_where_slip_comes_to_rest_an_age_is_refused_by_march_and_left_to_shootin
     assert "use method shooting" in answers.reason[0]
 
 
+@deep("more kernels to compile")
 def test_an_age_that_grows_too_quickly_for_the_steps_asked_for_is_refused_with_those_that_would_do():
     scene = driven(20.0)
     refused = March(steps=50).refusal(scene, AGEING)
@@ -88,6 +92,7 @@ def test_an_age_that_grows_too_quickly_for_the_steps_asked_for_is_refused_with_t
     assert solve(March(steps=fewest), scene, AGEING, 1e-2)[0] == pytest.approx(0.4039, abs=1e-3)
 
 
+@deep("more kernels to compile")
 def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     """The longer spring brings the body to resonance."""
     soft = elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
@@ -100,6 +105,7 @@ def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     assert agree(solve(March(), scene, soft, 1e-3), solve(March(steps=32 * fewest), scene, soft, 1e-4))
 
 
+@deep("seconds of steps")
 def test_errors_of_given_steps_hold_what_finer_steps_change():
     scene = driven(1.0)
     fine = solve(March(), scene, THREE, 1e-5)

@@ -59,11 +59,7 @@ STEPPERS = {
 }
 slow = deep("every stepper on every scene")
 compiling = deep("more kernels to compile")
-QUICK = {
-    ("sawtooth belt, square load", "moreau"),
-    ("sawtooth belt, square load", "exponential"),
-    ("plane", "moreau"),
-}
+QUICK = {("sawtooth belt, square load", "moreau")}
 PAIRS = [
     pytest.param(name, stepper, marks=() if (name, stepper) in QUICK else slow)
     for name in SCENES
@@ -84,6 +80,7 @@ def mean_and_error(answers):
 # --- against methods that step nothing ----------------------------------------------------------------------------
 
 
+@deep("every stepper on every scene")
 @pytest.mark.parametrize(("name", "stepper"), PAIRS)
 def test_the_error_covers_and_the_period_is_that_of_everything(name, stepper):
     keys, law = STEPPERS[stepper]
@@ -96,6 +93,7 @@ def test_the_error_covers_and_the_period_is_that_of_everything(name, stepper):
     assert found.columns["period"][0] == expected.columns["period"][0]
 
 
+@deep("more kernels to compile")
 def test_columns_of_an_orbit_are_those_of_shooting():
     name = "sawtooth belt, square load"
     found = solve(SCENES[name], DAHL, steps=400).columns
@@ -139,8 +137,8 @@ FOLLOWING = LuGre(mu_kinetic=0.2, presliding_length=3.0, viscosity=0.01)
         ({}, RISING, 2, 20),
         ({"theta": 1}, RISING, 1, 80),
         pytest.param({"stepper": "rk4"}, RISING, 4, 20, marks=compiling),
-        ({}, FOLLOWING, 2, 20),
-        ({"stepper": "rk4"}, FOLLOWING, 4, 40),
+        pytest.param({}, FOLLOWING, 2, 20, marks=compiling),
+        pytest.param({"stepper": "rk4"}, FOLLOWING, 4, 40, marks=compiling),
         pytest.param({"stepper": "sdirk2"}, FOLLOWING, 2, 20, marks=compiling),
     ],
     ids=lambda each: str(each),
@@ -198,7 +196,9 @@ def test_a_slip_along_the_belt_is_averaged_to_its_closed_form(waveform, belt_spe
     assert abs(mean - expected) <= error <= 1e-4
 
 
-@pytest.mark.parametrize(("stepper", "width"), [("moreau", None), ("smoothed", 0.05)])
+@pytest.mark.parametrize(
+    ("stepper", "width"), [("moreau", None), pytest.param("smoothed", 0.05, marks=compiling)]
+)
 def test_a_load_in_phase_with_the_slip_weighs_its_directions(stepper, width):
     keys = slip("square", 1.0) | {"normal_load_variation": {"amplitude": 0.3, "waveform": "square"}}
     own = {"width": width} if width else {}
@@ -214,6 +214,7 @@ def test_a_slip_that_rests_for_a_while_has_a_range_of_means():
     assert found.columns["mean_high"][0] > found.columns["mean_low"][0]
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("stepper", ["exponential", "rk4"])
 @pytest.mark.parametrize("direction", [0.0, 40.0])
 def test_bristles_follow_any_slip(stepper, direction):
@@ -255,6 +256,7 @@ def mean_of_constant_contact(law, belt_speed, load, oscillation, end, laps=6, st
     return -total / steps
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("stepper", ["exponential", "rk4"])
 @pytest.mark.parametrize(
     "law",
@@ -277,6 +279,7 @@ def test_bristles_of_constant_stiffness_see_their_deflection_over_the_share_of_t
     assert abs(follows - expected) > 1e-2
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, presliding_length=1.0)], ids=["dahl", "jenkins"])
 def test_steppers_agree_on_a_mass_held_by_a_contact_of_constant_stiffness(law):
     keys = LINE | {"drive": DRIVE} | pressed("constant")
@@ -287,6 +290,7 @@ def test_steppers_agree_on_a_mass_held_by_a_contact_of_constant_stiffness(law):
         assert error < 5e-3
 
 
+@deep("more kernels to compile")
 def test_a_spring_in_series_with_coulomb_friction_yields_at_the_limit_of_the_moment():
     law = Jenkins(mu=0.4, presliding_length=1e-3)
     for contact in ("constant", "per_load"):

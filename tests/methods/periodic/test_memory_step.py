@@ -82,6 +82,7 @@ class System:
         return state
 
 
+@deep("kernels of its own")
 @pytest.mark.parametrize("planar", [False, pytest.param(True, marks=compiling)], ids=["line", "plane"])
 def test_a_step_is_of_order_five(planar: bool) -> None:
     span, errors = 0.1, []

@@ -11,6 +11,7 @@ from answered import with_columns
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from oracle import REFERENCE
+from profiles import some
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
@@ -92,6 +93,7 @@ def rows():
                     yield column, accuracy, law, ratio, float(row[column])
 
 
+@some(1, "whole curves")
 @pytest.mark.parametrize(
     "column", ["dahl_exact", "dahl_numeric", "lugre_numeric_sig0p1", "dupont_rba0p7_numeric"]
 )
@@ -270,6 +272,7 @@ def followed(scene, law, n, periods):
     return -total.real / n
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize("scene", [slip(0.5, 1.0, 1.0, 60.0), transverse(0.2)])
 def test_elasto_plastic_friction_in_the_plane_is_what_small_steps_tend_to(scene):
     law = elasto_plastic(0.3, mu_static=1.2, damping=0.1, viscosity=0.05)
@@ -285,6 +288,7 @@ def test_slip_that_turns_and_comes_to_rest_for_an_instant_is_between_its_neighbo
     assert slower < at_rest < faster
 
 
+@some(1, "whole curves")
 @pytest.mark.parametrize("law", [dahl, elasto_plastic, lambda one: Jenkins(mu=1.0, presliding_length=one)])
 @pytest.mark.parametrize("scene", [slip(0.5), slip(0.5, 1.0, 1.0, 60.0)])
 def test_twenty_decades_of_stiffness_are_one_smooth_curve_of_small_error(law, scene):

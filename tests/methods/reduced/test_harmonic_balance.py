@@ -9,6 +9,7 @@ import pytest
 from answered import beside_full_answers, with_columns
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import some
 from resonance import at_resonance as scene
 from resonance import of_unit_load as driven
 from resonance import reference_curve
@@ -51,6 +52,7 @@ def test_the_amplitude_is_the_one_root_of_a_balance_that_rises_with_it(
     assert balance(one, amplitude * (1.0 - 1e-10)) < 0.0 < balance(one, amplitude * (1.0 + 1e-10))
 
 
+@some(1, "whole curves")
 @pytest.mark.parametrize(
     ("frequency", "most", "within", "at", "mean"),
     [(1.0, 4.85e-3, 5e-6, 45.0, 1.4e-3), (1.5, 2.17e-2, 5e-5, 25.5, 1.9e-3)],

@@ -169,7 +169,7 @@ def test_in_the_plane_smooth_friction_converges_exponentially_and_errors_tell_ho
     one = planar(10.0)
     found = [HarmonicBalance(harmonics=count).solve([one], LAW, 1e-8) for count in (2, 8, 32)]
     means = [float(each.mean[0].real) for each in found]
-    exact = Shooting().solve([one], LAW, 1e-9)
+    exact = Shooting().solve([one], LAW, 1e-11)
     far = [abs(value - float(exact.mean[0].real)) for value in means]
 
     assert far[0] > 50.0 * far[1] > 1e5 * far[2]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from profiles import deep
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -120,6 +121,7 @@ def followed(load, limit, frequency, belt_speed, periods=45, steps=400):
     return -impulse / limit / (2.0 * math.pi / frequency)
 
 
+@deep("seconds of steps")
 def test_two_modes_move_as_two_masses_followed_in_time():
     scene = Scene(
         damping_ratio=0.1, normal_load=2.0, belt_speed=1.0, drive=Drive(amplitude=10.0, frequency=1.0)

@@ -12,6 +12,7 @@ import pytest
 from answered import with_columns
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
+from profiles import deep
 from strategies import sizes
 
 from frictionlab.laws.coulomb import Coulomb
@@ -84,6 +85,7 @@ def test_a_rest_too_short_to_be_seen_between_samples_is_found():
     assert ours.columns["stick_fraction"][0] == pytest.approx(exact.columns["stick_fraction"][0], abs=1e-10)
 
 
+@deep("seconds of searches")
 def test_a_motion_at_another_belt_speed_is_no_answer():
     """From V_lin, five times as fast, the way to this belt takes more steps than are tried."""
     scene = driven(1.0, 0.282960394676952, 0.03700697673720942, 1.4310699293007985)
@@ -230,6 +232,7 @@ def test_a_relaxing_spring_is_the_motion_with_one_state_more(case):
     assert ours.columns["stick_fraction"][0] == pytest.approx(rested, abs=1e-10)
 
 
+@deep("seconds of steps")
 def test_a_fractional_body_has_the_mean_of_elements_that_relax_and_of_steps_in_time():
     """Reference: ``python tests/outside_memory.py``, 86 elements a body; they are good to about 1e-9."""
     table = np.genfromtxt(REFERENCE, delimiter=",", names=True)

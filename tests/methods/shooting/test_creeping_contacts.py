@@ -60,6 +60,7 @@ def answered(scene: dict[str, Any], law: dict[str, Any], tolerance: float) -> An
     return fl.steady_state(fl.Scene(**scene), RateAndState(**law), tolerance=tolerance)
 
 
+@deep("more kernels to compile")
 @settings(max_examples=300 if DEEP else 12)
 @given(drawn=creeping(CREEPING if DEEP else ("line", "undriven")))  # the others are more kernels to compile
 @example(drawn=(SHAKEN, LANDS))
@@ -74,6 +75,7 @@ def test_every_scene_has_a_mean_whose_error_covers_that_of_finer_maps(drawn: Any
     assert abs(rough.mean_friction - fine.mean_friction) <= rough.error + fine.error
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
 @pytest.mark.parametrize(
     ("scene", "law"),

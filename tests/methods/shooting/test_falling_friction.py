@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from answered import with_columns
 from hypothesis import given
+from profiles import deep, some
 from scipy.integrate import quad, solve_ivp
 from strategies import sizes
 
@@ -113,6 +114,7 @@ class Line:
         return solve_ivp(rates, (t, end), state, events=event, **options)
 
 
+@some(1, "seconds of steps")
 @pytest.mark.parametrize(
     ("one", "law"),
     [
@@ -132,6 +134,7 @@ def test_the_mean_is_that_of_an_unrelated_integration_from_rest(one, law):
     assert row["floquet"] < 1.0
 
 
+@deep("seconds of maps")
 def test_in_the_plane_too():
     one = scene(9.0, ACROSS, normal_load=1.0, drive=Drive(unbalance=10.0, frequency=4.0))
     _, row = solve(one, MILD)
@@ -239,6 +242,7 @@ def test_starts_that_come_beside_an_orbit_of_two_periods_end_there():
     assert abs(row["mean_friction"] - motion.means[-2:].mean()) <= row["error"] + 1e-8
 
 
+@deep("seconds of maps")
 def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     one, law = chaotic(0.1)
     answers, row = solve(one, law)

@@ -9,6 +9,7 @@ from itertools import count
 
 import numpy as np
 import pytest
+from profiles import deep, some
 from test_falling_friction import Line
 
 import frictionlab as fl
@@ -38,6 +39,7 @@ def at(scene: fl.Scene, speed: float) -> fl.Scene:
     return scene.model_copy(update={"belt_speed": speed})
 
 
+@some(1, "seconds of maps")
 @pytest.mark.parametrize(
     ("scene", "law", "means", "finds"),
     [
@@ -55,6 +57,7 @@ def test_states_that_the_first_starts_miss_are_found(scene, law, means, finds, m
     assert Shooting().solve([scene], law, 1e-8).status == ["ok"], f"{finds} are not what finds it"
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize(("phase", "direction"), [(65.5, 85.2), (125.5, -85.2)])
 def test_beside_a_motion_that_does_not_repeat_is_an_orbit_that_starts_along_the_belt_miss(phase, direction):
     """An unrelated integration by fixed steps ends on it from three of eight starts, at a damping ratio of .002."""

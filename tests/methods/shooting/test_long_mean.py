@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from profiles import deep
+from profiles import deep, some
 
 import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
@@ -42,6 +42,7 @@ def forgetting(n: int, keeps: float) -> np.ndarray:
     return values[1000:]
 
 
+@some(2, "seconds of maps")
 @pytest.mark.parametrize("name", ["logistic", "forgets at once", "forgets in 10", "forgets in 100"])
 def test_two_standard_errors_cover_the_mean_of_chaos(name):
     keeps = {"forgets at once": 0.0, "forgets in 10": 0.9, "forgets in 100": 0.99}
@@ -67,7 +68,7 @@ def test_quasi_periodic_means_converge_faster_than_any_power():
         motions = [np.exp(np.sin(phases + start)) for start in (0.0, 1.0, 2.5)]
         found = long_mean(motions)
         errors.append(abs(found.mean - 1.2660658777520084))  # I_0(1)
-        assert errors[-1] <= found.error + 1e-15
+        assert errors[-1] <= found.error + 1e-14
     assert found.quasi_periodic
     assert errors[1] < 1e-4 * errors[0]
     assert errors[2] < 1e-13
@@ -75,8 +76,8 @@ def test_quasi_periodic_means_converge_faster_than_any_power():
 
 
 def test_weighted_means_keep_constants():
-    assert birkhoff_mean(np.full(100, 0.3)) == pytest.approx(0.3, abs=1e-15)
-    assert long_mean([np.full(512, 0.3)] * 2).mean == pytest.approx(0.3, abs=1e-15)
+    assert birkhoff_mean(np.full(100, 0.3)) == pytest.approx(0.3, abs=1e-14)
+    assert long_mean([np.full(512, 0.3)] * 2).mean == pytest.approx(0.3, abs=1e-14)
 
 
 def test_a_period_longer_than_any_that_is_looked_for_before_is_found_late():
@@ -111,6 +112,7 @@ def test_an_orbit_of_two_periods_in_the_plane_has_its_mean_over_both():
     assert "an orbit of 2 drive periods" in state.reason
 
 
+@deep("seconds of maps")
 def test_a_slider_shaken_in_si_units_has_its_long_mean():
     """LuGre at 60 Hz and 2 mm/s: 20 N on 0.5 kg, 5,000 N/m and 5 N s/m, a belt shaken by 5 um."""
     shaken = 2.0 * math.pi * 60.0
@@ -134,6 +136,7 @@ def test_a_slider_shaken_in_si_units_has_its_long_mean():
     assert abs(state.mean_friction - 0.30565) < 1e-4 + state.error  # .3056 to .3057 by another integration
 
 
+@deep("seconds of maps")
 @pytest.mark.parametrize(
     "law", [fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), fl.Dahl(mu=0.4, presliding_length=0.01)]
 )
@@ -246,7 +249,7 @@ def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():
     assert found[0] is found[1]
     assert found[0].mean == 0.3
     assert found[0].error == pytest.approx(1e-15 + 2.0 * motion.off_by_maps())
-    assert 0.0 < motion.off_by_maps() < 1e-5
+    assert 1e-14 < motion.off_by_maps() < 1e-5
     assert found[2] is wild
 
 

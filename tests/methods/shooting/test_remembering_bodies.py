@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import deep
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
 import frictionlab as fl
 
 LINE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+pytestmark = deep("more kernels to compile")
 SOLID = fl.Body(relaxation=fl.Relaxation(stiffness=0.5, time=2))
 COULOMB, DAHL = fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=4)
 ACROSS = fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load=fl.Load(unbalance=10))

@@ -11,7 +11,7 @@ from answered import with_columns
 from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
-from profiles import DEEP
+from profiles import DEEP, deep, some
 from strategies import sizes
 
 from frictionlab.laws.base import FrictionLaw
@@ -69,6 +69,7 @@ def table_of(path):
     return np.genfromtxt(path, delimiter=",", names=True)[1:]
 
 
+@some(4, "whole curves")
 @of_file
 def test_every_planar_reference_curve_is_met_with_its_motion_and_energies(path):
     table = table_of(path)
@@ -116,6 +117,7 @@ def comfortable(path):
     return speeds[np.linspace(0, len(speeds) - 1, 10).round().astype(int)]
 
 
+@some(1, "seconds of collocation")
 @of_file
 def test_below_the_accuracy_of_the_references_the_error_is_true_by_collocation(path):
     speeds = comfortable(path)[every(4)]
@@ -178,7 +180,8 @@ def test_one_degree_of_freedom_is_that_of_the_exact_method(name):
     np.testing.assert_allclose(
         ours.columns["stick_fraction"], exact.columns["stick_fraction"], rtol=0, atol=1e-5
     )
-    assert ((ours.columns["stick_fraction"] > 0.0) == (exact.columns["stick_fraction"] > 0.0)).all()
+    sticks = [each.columns["stick_fraction"] > 1e-8 for each in (ours, exact)]  # for longer than rounding can
+    assert (sticks[0] == sticks[1]).all()
 
 
 ORBITS = {
@@ -288,6 +291,7 @@ RESTING = {
 }
 
 
+@some(2, "seconds of maps")
 @pytest.mark.parametrize("name", RESTING)
 def test_where_friction_holds_the_loads_on_a_belt_at_rest_every_rest_state_is_in_the_range(name):
     one, force = RESTING[name]
@@ -369,6 +373,7 @@ UNDAMPED = {
 }
 
 
+@some(2, "seconds of maps")
 @pytest.mark.parametrize("name", UNDAMPED)
 def test_corner_cases_are_answered_or_fail_with_a_reason(name):
     answers = solve(UNDAMPED[name], 1e-7)
@@ -414,6 +419,7 @@ def scenes_over_decades(draw):
 ALWAYS_THERE = ("mean_friction", "mean_friction_transverse", "error", "velocity_amplitude", "stick_fraction")
 
 
+@deep("seconds of maps")
 @given(scenes_over_decades())
 def test_two_tolerances_agree_within_their_errors_on_any_planar_scene(one):
     fine, coarse = solve(one, 1e-8), solve(one, 1e-7)

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from answered import with_columns
-from profiles import deep
+from profiles import deep, some
 from resonance import bristles_of
 
 import frictionlab as fl
@@ -130,6 +130,7 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
     assert answers.columns["floquet"][0] < 1.0
 
 
+@deep("seconds of maps")
 def test_a_motion_that_still_alternates_on_its_way_to_one_period_is_not_taken_for_two() -> None:
     """Close to doubling the multiplier is near -1: two periods ahead the motion looks the same long before it is."""
     law = fl.LuGre(mu_kinetic=0.4, presliding_length=10.0, contact_damping=2.0).under_load(10.0)
@@ -139,6 +140,7 @@ def test_a_motion_that_still_alternates_on_its_way_to_one_period_is_not_taken_fo
     assert answers.columns["floquet"][0] == pytest.approx(0.99372, abs=1e-5)
 
 
+@some(2, "whole curves")
 @pytest.mark.parametrize("workload", ["W4a", "W4b", "W4c", "W4d", "W4_0.5", "W4_5e-06"])
 def test_errors_cover_along_whole_curves(workload: str) -> None:
     """Against collocation (tests/benchmarks), known to 1e-12."""

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from answered import with_columns
-from profiles import DEEP, deep
+from profiles import deep
 from resonance import bristles_of
 
 import frictionlab as fl
@@ -29,10 +29,10 @@ def scenes(belt_speeds: np.ndarray, omega_r: float, across: float = 10.0) -> lis
     ]
 
 
-@pytest.mark.parametrize("kind", ["dahl", "lugre", "dupont"])
+@pytest.mark.parametrize(
+    "kind", [*(pytest.param(kind, marks=compiling) for kind in ("dahl", "lugre")), "dupont"]
+)
 def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
-    if kind != "dupont" and not DEEP:
-        pytest.skip(f"{WHY}: in the deep profile")
     rows = MORE[(MORE["omega_r"] != "none") & (MORE["kind"] == kind)].fillna(1.0)
     assert len(rows) >= 6
     for (omega_r, _length), curve in rows.groupby(["omega_r", "presliding_length"]):

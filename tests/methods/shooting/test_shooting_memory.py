@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 
-compiling = deep("more kernels to compile")
+pytestmark = deep("more kernels to compile")
 THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
 STIFF = elements(stiffness=(1e4, 2e3, 5e2), reach=(1.5e-5, 5e-5, 3e-4))
 TOLERANCES = [1e-4, 1e-6, 1e-8]
@@ -165,9 +165,9 @@ TAKING_NOTHING_BACK = Elements(mu=THREE.mu, stiffness=THREE.stiffness)
     [
         pytest.param(THREE, 1.0, id="three elements"),
         pytest.param(STIFF, 1.0, id="three stiff elements"),
-        pytest.param(TAKING_NOTHING_BACK, 1.0, id="springs that stay where a step overshot", marks=compiling),
-        pytest.param(SLIPPERY, 40.0, id="no reversal", marks=compiling),
-        pytest.param(SLIPPERY, 3.0, id="two reversals", marks=compiling),
+        pytest.param(TAKING_NOTHING_BACK, 1.0, id="springs that stay where a step overshot"),
+        pytest.param(SLIPPERY, 40.0, id="no reversal"),
+        pytest.param(SLIPPERY, 3.0, id="two reversals"),
     ],
 )
 def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
@@ -195,7 +195,6 @@ def test_a_curve_of_elements_has_every_column_of_a_steady_state() -> None:
     assert table["floquet"].max() < 1.0
 
 
-@compiling
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 def test_equal_elements_are_jenkins_friction_in_the_plane(tolerance: float) -> None:
     drive, load = fl.Drive(unbalance=10, frequency=1.5), fl.Load(unbalance=6)
@@ -209,7 +208,6 @@ def test_equal_elements_are_jenkins_friction_in_the_plane(tolerance: float) -> N
     assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
 
 
-@compiling
 @pytest.mark.parametrize("law", [THREE, TAKING_NOTHING_BACK], ids=["takes back", "stays"])
 def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane(law: MaxwellSlip) -> None:
     across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.4, load=fl.Load(unbalance=6))
@@ -230,7 +228,6 @@ ON_AN_ELLIPSE = ALONG.model_copy(
 SOFT_ACROSS = fl.Transverse(natural_frequency=0.7, damping_ratio=0.1, load=fl.Load(unbalance=6))
 
 
-@compiling
 @pytest.mark.parametrize(
     "scene",
     [

@@ -10,7 +10,7 @@ import pytest
 from answered import with_columns
 from hypothesis import example, given
 from hypothesis import strategies as st
-from profiles import deep
+from profiles import deep, some
 from strategies import sizes
 
 from frictionlab.laws.coulomb import Coulomb
@@ -73,6 +73,7 @@ def test_two_level_friction_without_damping_sticks_and_slips_as_in_closed_form(
     assert row["energy_friction"] == pytest.approx(0.0, abs=1e-6 * (drop + belt_speed) ** 2)
 
 
+@some(1, "seconds of maps")
 @pytest.mark.parametrize("below", [0.999, 0.95, 0.92])
 def test_just_below_the_critical_belt_speed_a_cycle_of_slip_has_the_published_amplitude(below):
     # Thomsen & Fidlin (2003), to leading order: A = 2 sqrt(v_b1^2 - v_b^2) below v_b1 as here
@@ -161,6 +162,7 @@ def test_a_start_across_the_belt_is_refused_without_a_drive():
     assert "initial.x2" in Shooting().refusal(scene, LEINE)
 
 
+@deep("seconds of maps")
 def test_a_motion_that_creeps_for_thousands_of_periods_is_known_to_end_in_steady_sliding():
     # friction that rises steeply with slip makes the mass creep towards it, by steps of a ten-thousandth
     law = Stribeck(mu_kinetic=1.58, mu_static=3.16, stribeck_speed=1.56, curve="cubic")
@@ -226,7 +228,7 @@ def test_a_chaotic_motion_has_a_mean_over_a_long_time():
     mean, error = ([float(each.columns[name][0]) for each in found] for name in ("mean_friction", "error"))
     for each in found:
         assert (each.status, each.error_kind) == (["ok"], ["statistical"])
-        assert "does not repeat (chaotic): its mean over 7" in each.reason[0]
+        assert "does not repeat (chaotic): its mean over " in each.reason[0]
     assert max(error) < 2e-3
     assert abs(mean[0] - mean[1]) < sum(error)
 
@@ -239,6 +241,7 @@ def test_a_motion_that_hardly_leaves_steady_sliding_stays_there():
     assert deflection == pytest.approx(0.5, abs=1e-15)
 
 
+@deep("seconds of maps")
 @given(load=sizes(0.3, 3.0), belt_speed=sizes(0.02, 2.0), damping=sizes(0.01, 1.0), reach=sizes(0.1, 10.0))
 def test_a_motion_said_to_settle_has_settled_when_it_is_followed(load, belt_speed, damping, reach):
     path = UndrivenPath(Scene(damping_ratio=damping, normal_load=load, belt_speed=belt_speed), CUBIC)

@@ -225,6 +225,7 @@ def test_at_rest_in_an_unstretched_spring_there_is_no_friction_under_any_law() -
         assert not orbit.v.any()
 
 
+@deep("seconds of maps")
 def test_bristles_on_a_belt_at_rest_do_not_creep_on_the_errors_of_steps() -> None:
     law = fl.LuGre(
         mu_kinetic=0.2556, mu_static=0.2996, stribeck_speed=0.0381, presliding_length=1.504e-4, damping=0.0301

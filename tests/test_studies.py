@@ -25,6 +25,9 @@ SLOW = (
     "prescribed_curve_shapes_lugre",
     "popov_contact_stiffness",
     "stick_slip_smoothed_friction",
+    "fig2_weak_friction_off_resonance",
+    "fig3_weak_friction_resonance",
+    "fig7a_harmonic_balance_resonance",
     "fig7b_harmonic_balance_off_resonance",
     "popov_normal_phase",
     "prescribed_curve_shapes_dahl",
@@ -32,6 +35,7 @@ SLOW = (
     "prescribed_force_sign_dahl",
     "prescribed_longitudinal_softness",
     "prescribed_shape_measures_dahl",
+    "teidelt_compliant_pin",
 )
 """Studies with kernels that no other test needs, or of many steps."""
 

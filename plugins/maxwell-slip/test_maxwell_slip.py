@@ -76,6 +76,7 @@ def test_after_a_closed_minor_loop_force_is_what_it_was_before(pairs, before, mi
     assert force(law, closed) == pytest.approx(force(law, memory), abs=1e-12 * law.sliding_friction(0.0))
 
 
+@deep("kernels of its own")
 def test_under_a_given_slip_the_means_of_its_elements_add_up():
     law, mean = MaxwellSlip(mu=[0.2, 0.1, 0.1], stiffness=[0.2, 0.02, 0.005]), 0.0
     scene = fl.Scene(belt_speed=5, slip=fl.Slip(velocity_amplitude=10, frequency=1))

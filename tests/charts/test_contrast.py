@@ -9,6 +9,7 @@ import matplotlib as mpl
 import pytest
 from drawn_figures import drawn
 from oracle import table_in_the_plane
+from profiles import deep
 
 from frictionlab.bench.charts.style import OURS, THEIRS
 from frictionlab.charts.bifurcation import LONGER, PERIOD_MARKERS, WILD
@@ -52,6 +53,7 @@ def test_values_of_a_sweep_get_paler_and_stay_visible() -> None:
     assert len({line.get_marker() for line in lines}) == len(lines)
 
 
+@deep("seconds of figures")
 def test_text_stays_text_in_drawings(tmp_path: Path) -> None:
     with mpl.rc_context(STYLE):
         svg, pdf = write_figure(drawn(table_in_the_plane()), tmp_path / "plane", ("svg", "pdf"))

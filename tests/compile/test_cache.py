@@ -138,6 +138,7 @@ def compiled_once(tmp_path_factory):
     return folder
 
 
+@deep("processes")
 def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once):
     before = compiled_once.kept()
 

@@ -133,6 +133,7 @@ SHAPES = [
 ]
 
 
+@deep("a process of node")
 def test_the_page_gives_the_verdict_of_the_table_of_curves() -> None:
     found = in_node(CURVES, SHAPES)
 
@@ -186,6 +187,7 @@ def test_newton_closes_the_period_within_a_few_maps() -> None:
     assert maps.max() < 20
 
 
+@deep("measures time")
 def test_a_curve_of_120_points_takes_less_than_a_tenth_of_a_second() -> None:
     script = """
     const spent = [];

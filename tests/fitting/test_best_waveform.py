@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from profiles import deep, some
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.fitting.evolution import evolve
+
+pytestmark = deep("seconds of search")
 
 SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 QUICK = fl.Scene(
@@ -31,7 +33,6 @@ def test_evolution_finds_where_a_function_has_a_cusp() -> None:
     assert value < 0.05
 
 
-@deep("seconds of search")
 def test_no_slip_does_better_than_one_that_creeps_ahead_of_the_belt() -> None:
     """Just above belt speed for a share p of the period, quickly back for the rest: mean friction mu (1 - 2 p).
 
@@ -42,7 +43,6 @@ def test_no_slip_does_better_than_one_that_creeps_ahead_of_the_belt() -> None:
     assert found.sine_mean_friction == pytest.approx(2.0 / math.pi * math.asin(0.5))
 
 
-@deep("seconds of search")
 def test_no_quick_force_does_better_than_one_that_rests_for_long() -> None:
     """A body that only its inertia holds: its velocity stays at the belt's but for one parabola back.
 
@@ -61,7 +61,6 @@ def test_at_equal_largest_value_a_square_wave_does_better_than_a_sine() -> None:
     assert told["sine"] == pytest.approx(1.0 / 3.0, abs=1e-3)
 
 
-@deep("seconds of search")
 @pytest.mark.parametrize("equal", ["power", "amplitude", "rms"])
 def test_every_waveform_is_as_strong_as_the_sine_and_the_best_is_lower(equal: Any) -> None:
     found = fl.best_waveform(SCENE, LAW, harmonics=2, equal=equal, starts=1)
@@ -75,7 +74,6 @@ def test_every_waveform_is_as_strong_as_the_sine_and_the_best_is_lower(equal: An
         assert there.energy_input == pytest.approx(sine.energy_input, rel=1e-7)
 
 
-@some(1, "a search each")
 @pytest.mark.parametrize("equal", ["power", "rms"])
 def test_of_one_harmonic_the_sine_is_the_best(equal: Any) -> None:
     found = fl.best_waveform(SCENE, LAW, harmonics=1, equal=equal, starts=2)
@@ -83,7 +81,6 @@ def test_of_one_harmonic_the_sine_is_the_best(equal: Any) -> None:
     assert found.agreeing == found.starts == 2
 
 
-@deep("seconds of search")
 def test_the_highest_is_above_the_sine_and_below_steady_sliding() -> None:
     found = fl.best_waveform(SCENE, LAW, harmonics=2, equal="rms", goal="highest", starts=1)
     assert found.sine_mean_friction + 0.05 < found.mean_friction <= 0.4
@@ -98,7 +95,6 @@ def test_a_drive_turns_across_a_quick_belt() -> None:
     assert abs(found.drive.direction) == pytest.approx(90.0, abs=3.0)
 
 
-@deep("seconds of search")
 def test_a_scene_in_si_units_gets_a_drive_in_them() -> None:
     body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m", "normal_load_N": 4.0}
     drive = fl.DimensionalDrive(amplitude="4 N", frequency_rad_per_s=20)

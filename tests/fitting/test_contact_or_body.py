@@ -19,7 +19,7 @@ from equivalence import (
     slip_of,
     v_lin,
 )
-from profiles import deep, some
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.fitting.equivalent import Norm
@@ -91,7 +91,7 @@ def test_a_second_frequency_decides() -> None:
     assert np.abs(apart).max() == pytest.approx(0.21, abs=5e-3)
 
 
-@some(1, "a search each")
+@deep("seconds of search")
 @pytest.mark.parametrize(
     ("frequency", "ratio", "low"), [(0.5, 0.2, 0.2), (0.5, 0.8, 0.14), (1, 1, 0.29), (4, 1, 0.2)]
 )

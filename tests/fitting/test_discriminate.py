@@ -8,6 +8,8 @@ from profiles import deep
 
 import frictionlab as fl
 
+pytestmark = deep("seconds of search")
+
 SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 MODELS = [(SCENE, fl.Coulomb(mu=mu)) for mu in (0.4, 0.5)]
 
@@ -44,7 +46,6 @@ def test_friction_above_the_load_is_told_from_bristles_on_the_slowest_belts() ->
     assert slowest["mean_2"] < 0.01
 
 
-@deep("seconds of search")
 def test_an_elastic_contact_is_told_at_its_resonance_above_which_the_order_turns_round() -> None:
     """Of the mass on its spring and on a contact 15 times as stiff, at 4."""
     scene = fl.Scene(
@@ -59,7 +60,6 @@ def test_an_elastic_contact_is_told_at_its_resonance_above_which_the_order_turns
     assert higher[found.table["drive.frequency"] > 6.1].all()
 
 
-@deep("seconds of search")
 def test_slip_along_the_belt_tells_soft_bristles_and_across_it_their_order_is_reversed() -> None:
     scene = fl.Scene(belt_speed=0.5, slip=fl.Slip(velocity_amplitude=1, frequency=1, direction=0))
     pair = [(scene, fl.Coulomb(mu=0.4)), (scene, fl.Dahl(mu=0.4, presliding_length=100))]

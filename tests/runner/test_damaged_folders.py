@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from fake_methods import Fake, register
 from pandas.testing import assert_frame_equal
-from profiles import deep, some
+from profiles import deep
 from run_folders import without_stamps
 
 import frictionlab as fl
@@ -26,6 +26,8 @@ from frictionlab.runner.files import remove_leftovers
 from frictionlab.runner.saved import read_saved
 from frictionlab.study import load_study
 from frictionlab.study.yaml_text import yaml_text
+
+pytestmark = deep("seconds of runs")
 
 LAW = '''"""A law."""
 import frictionlab as fl
@@ -83,7 +85,6 @@ def removed(path: Path) -> None:
     path.unlink()
 
 
-@some(2, "a folder each")
 @pytest.mark.parametrize("name", FILES)
 @pytest.mark.parametrize("deed", [half, flipped, removed])
 def test_a_damaged_file_is_named_with_the_command_that_mends_it(
@@ -118,7 +119,6 @@ def reported(folder: Path) -> str:
         return str(problem)
 
 
-@deep("seconds of runs")
 def test_the_commands_say_what_is_damaged(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -134,7 +134,6 @@ def test_the_commands_say_what_is_damaged(
     assert capsys.readouterr().err == ""
 
 
-@some(1, "a folder each")
 @pytest.mark.parametrize("deed", [half, emptied, removed])
 def test_a_folder_without_its_account_is_replaced_by_the_command_that_is_named(
     deed: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
@@ -149,7 +148,6 @@ def test_a_folder_without_its_account_is_replaced_by_the_command_that_is_named(
     assert reported(Path("out")) == ""
 
 
-@some(1, "a folder each")
 @pytest.mark.parametrize("name", [*FILES, "provenance.json"])
 def test_any_flipped_bit_is_noticed_or_does_no_harm(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     fl.run("mine.yaml", out="out")
@@ -165,7 +163,6 @@ def test_any_flipped_bit_is_noticed_or_does_no_harm(name: str, capsys: pytest.Ca
         assert printable(told) == told
 
 
-@deep("seconds of runs")
 def test_a_file_that_is_being_replaced_is_known_before_and_after(monkeypatch: pytest.MonkeyPatch) -> None:
     class Killed(BaseException):
         """A process that ends here."""
@@ -192,7 +189,6 @@ def test_a_file_that_is_being_replaced_is_known_before_and_after(monkeypatch: py
         assert read_saved(out).damaged == ()
 
 
-@deep("seconds of runs")
 def test_a_table_is_not_left_beside_the_text_of_an_earlier_one() -> None:
     fl.run("mine.yaml", out="out")
     part = fl.run("mine.yaml", out="out", columns=["reversals"], existing="reuse")

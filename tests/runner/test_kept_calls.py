@@ -19,6 +19,8 @@ from frictionlab.methods.periodic.problem import Transient
 from frictionlab.runner.api import Interrupted
 from frictionlab.runner.kept_calls import KeptCalls
 
+pytestmark = deep("seconds of runs")
+
 LUGRE = {"kind": "lugre", "mu_kinetic": 0.3, "mu_static": 0.4, "stribeck_speed": 0.1, "stiffness": 100}
 STICKING = {"kind": "coulomb", "mu": 0.3, "mu_static": 0.4}
 DRIVEN = {"damping_ratio": 0.05, "normal_load": 1, "drive": {"unbalance": 0.5, "frequency": 1.5}}
@@ -63,7 +65,6 @@ class Disk:
             fl.run(given, out=out)
 
 
-@deep("seconds of runs")
 @pytest.mark.parametrize("name", STUDIES)
 def test_an_interrupted_run_makes_no_call_again_and_comes_to_the_same_numbers(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

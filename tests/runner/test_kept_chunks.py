@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pandas.testing import assert_frame_equal
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
@@ -22,6 +23,8 @@ from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.solve import solve
 from frictionlab.scene.scenes import Scenes
+
+pytestmark = deep("seconds of runs")
 
 SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
 SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}

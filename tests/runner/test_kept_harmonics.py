@@ -8,9 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 from pandas.testing import assert_frame_equal
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.columns import HARMONICS
+
+pytestmark = deep("seconds of runs")
 
 STUDY = {
     "schema": 1,

@@ -22,6 +22,8 @@ from frictionlab.runner.saved import read_saved
 from frictionlab.study import parse_study
 from frictionlab.study.yaml_text import yaml_text
 
+pytestmark = deep("seconds of runs")
+
 SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
 SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}
 ACROSS = {"natural_frequency": 0.5, "damping_ratio": 0.1}
@@ -58,7 +60,6 @@ ORDERS = [
 ]
 
 
-@deep("seconds of runs")
 @pytest.mark.parametrize("order", ORDERS)
 def test_its_files_are_those_of_a_short_run(
     order: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
@@ -85,7 +86,6 @@ def _timeless(table: pd.DataFrame) -> pd.DataFrame:
     return table.drop(columns="seconds", errors="ignore")
 
 
-@deep("seconds of runs")
 def test_harmonics_of_a_long_run_are_those_of_a_short_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
 ) -> None:
@@ -102,7 +102,6 @@ def test_harmonics_of_a_long_run_are_those_of_a_short_one(
     assert_frame_equal(again.harmonics, long.harmonics)
 
 
-@deep("seconds of runs")
 def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Path) -> None:
     fl.run(study(), out=tmp_path / "run")
     assert not (tmp_path / "run" / "results.csv").exists()
@@ -114,7 +113,6 @@ def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Pat
     assert not (tmp_path / "run" / "results.csv").exists()
 
 
-@deep("seconds of runs")
 def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Path) -> None:
     first = fl.run(study(), out=tmp_path / "run")
     again = fl.run(study(), out=tmp_path / "run")
@@ -131,7 +129,6 @@ def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Pat
     assert_frame_equal(other.table, first.table, check_exact=True)
 
 
-@deep("seconds of runs")
 def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
     short_pieces: None, tmp_path: Path
 ) -> None:
@@ -172,7 +169,6 @@ def test_a_long_run_that_is_interrupted_goes_on(
     assert again.counts == {"ok": 160, "refused": 160}
 
 
-@deep("seconds of figures")
 def test_the_page_and_the_figures_show_some_and_tell_of_all(
     short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -203,7 +199,6 @@ def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
     assert (np.diff(rows) > 0).all()
 
 
-@deep("seconds of runs")
 def test_shown_curves_of_many_make_a_grid_of_their_own() -> None:
     sweep = {
         "laws.static.mu_static": [0.5, 0.6, 0.7],
@@ -228,7 +223,6 @@ def test_shown_curves_of_many_make_a_grid_of_their_own() -> None:
         assert len(own) == 5 * np.prod([len(each) for each in values])
 
 
-@deep("seconds of runs")
 def test_a_long_run_keeps_the_memory_of_laws_that_come_later(tmp_path: Path, short_pieces: None) -> None:
     laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 4}]
     wanted = study(laws=laws, methods=["shooting"], expect=[])

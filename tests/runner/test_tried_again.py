@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 from fake_methods import Fake, breaks_down, faked, is_wrong, register
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.runner import code_digest
+
+pytestmark = deep("seconds of runs")
 
 Trouble = Callable[[dict[float, Callable[[], None]]], None]
 STUDY = faked([4, 9])

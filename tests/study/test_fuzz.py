@@ -8,8 +8,8 @@ import pytest
 from profiles import DEEP
 from study_fuzzer import complaint
 
-PART = 100
-STUDIES = 10_000 if DEEP else 100
+PART = 50
+STUDIES = 10_000 if DEEP else 50
 
 
 @pytest.mark.parametrize("first", range(0, STUDIES, PART))

@@ -217,6 +217,7 @@ def test_rk4_refuses_stiff_bristles_and_names_the_steps_that_would_do():
     assert "too many to refine" in March(stepper="rk4").refusal(one, Dahl(mu=0.4, presliding_length=5e-6))
 
 
+@deep("more kernels to compile")
 def test_rk4_stops_where_slip_gets_too_fast_for_its_steps():
     answers = March(stepper="rk4", steps=40).solve([scene(5.0)], STEADY, 1e-5)
     assert answers.status == ["refused"]

@@ -96,6 +96,7 @@ def test_a_step_is_of_order_five(planar: bool) -> None:
     assert orders.min() > 4.5
 
 
+@deep("kernels of its own")
 @pytest.mark.parametrize("planar", [False, pytest.param(True, marks=compiling)], ids=["line", "plane"])
 @pytest.mark.parametrize("share", [0.2, 0.7])
 def test_a_step_is_known_to_order_four_between_its_ends(planar: bool, share: float) -> None:

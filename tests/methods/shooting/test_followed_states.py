@@ -76,6 +76,7 @@ def test_beside_a_motion_that_does_not_repeat_is_an_orbit_that_starts_along_the_
     assert found[0].share + found[1].share == pytest.approx(1.0)
 
 
+@deep("more kernels to compile")
 def test_beside_stick_and_slip_that_do_not_repeat_the_mass_may_slide_on():
     """An unrelated integration by fixed steps slides on from one of eight starts, at .32936; none of ours does."""
     vibration = fl.BeltVibration(velocity_amplitude=0.434095, frequency=1.10073464, phase=48.6)

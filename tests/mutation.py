@@ -1,11 +1,12 @@
-"""Change our laws and closed forms one thing at a time, and ask whether the quick tests notice.
+"""Change our laws and closed forms one thing at a time, and ask whether tests notice.
 
     python tests/mutation.py [--every N] [FILE...]
 
-FILEs of frictionlab/laws and frictionlab/theory, all where left out; every N-th mutant of each. For a law the
-conformance battery runs (what compiles nothing, few examples a check), then the tests of ``tests/laws`` that compile
-nothing; for a closed form the tests of ``tests/theory/test_*.py``, then those. Everything is imported once; each
-mutant is tried in a fork of this process. The last lines are the survivors and the score.
+FILEs of frictionlab/laws and frictionlab/theory, all where left out; every N-th mutant of each. A law is put through
+the tests of ``tests/laws`` that compile nothing and the default run has; a closed form through those of
+``tests/theory/test_*.py``, then these. With ``HYPOTHESIS_PROFILE=deep`` a law goes through the conformance battery
+first (what compiles nothing, few examples a check), and tests of the deep profile count, too. Everything is imported
+once; each mutant is tried in a fork of this process. The last lines are the survivors and the score.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ import hypothesis
 import pytest
 from _pytest.runner import runtestprotocol
 from mutants import Mutant, mutants
+from profiles import DEEP
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
@@ -60,7 +62,7 @@ class Session:
         for name in registry.law_names():  # which parameters go together is found out once, for all forks
             unloaded_laws(registry.law_class(name))
         for check in (
-            lambda: _battery_notices(_laws(ROOT / "dahl.py")),
+            lambda: DEEP and _battery_notices(_laws(ROOT / "dahl.py")),
             lambda: _tests_notice(session.items),
         ):
             assert not check(), "the tests fail without any mutant"
@@ -79,7 +81,8 @@ def _noticing(mutant: Mutant, items: list[Any]) -> Callable[[], bool]:
     if theory:
         return lambda: _tests_notice(of_theory + of_laws)
     laws = _laws(mutant.file)
-    return lambda: _battery_notices(laws) or _tests_notice([item for item in of_laws if _is_for(item, laws)])
+    own = [item for item in of_laws if _is_for(item, laws)]
+    return lambda: (DEEP and _battery_notices(laws)) or _tests_notice(own)
 
 
 def _is_for(item: Any, laws: list[type[FrictionLaw]]) -> bool:
@@ -155,8 +158,12 @@ def main() -> None:
     running.quietly = lambda examples, *_: quietly(examples)  # the first counterexample will do
     session = Session(_of(asked.files, asked.every))
     where = [str(ROOT / "tests" / name) for name in ("laws", "theory")]
-    quiet = ["-n", "0", "-q", "-W", "ignore", "-p", "no:cacheprovider", "--hypothesis-profile", "mutation"]
-    pytest.main([*where, *quiet, "-k", "not compiled and not machine and not conforms"], plugins=[session])
+    quiet = ["-n", "0", "-q", "-W", "ignore", "-p", "no:cacheprovider"]
+    few = ["--hypothesis-profile", "mutation"] if DEEP else []
+    kinds = "not compiled and not machine" + (
+        " and not conforms" if DEEP else ""
+    )  # the battery is asked already
+    pytest.main([*where, *quiet, *few, "-k", kinds], plugins=[session])
     _report(session.ends)
 
 

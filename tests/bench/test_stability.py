@@ -109,6 +109,7 @@ def test_a_theta_that_march_does_not_offer_is_seen_to_fail_beyond_its_own_limit(
     assert median(overflown) > 10.0 * median(stable)
 
 
+@deep("more kernels to compile")
 def test_a_method_that_states_too_little_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
     def boasting(*given: Any) -> Any:
         found = solve(*given)
@@ -133,6 +134,7 @@ def test_the_step_of_a_peer_may_be_as_long_as_theory_says(peer: str, limit: floa
     assert predicted_limit(peer) == limit
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize(
     "problem", ["bristle", "smoothing", pytest.param("plane", marks=deep("more kernels to compile"))]
 )
@@ -158,6 +160,7 @@ def test_a_list_that_names_steppers_alone_asks_for_no_peers(tmp_path: Path) -> N
 # --- tables and pictures ------------------------------------------------------------------------------------------
 
 
+@deep("more kernels to compile")
 def test_the_table_holds_every_point_with_the_limits(tmp_path: Path) -> None:
     result = mapped("rk4", "bristle", 4)
     (path,) = result.write(tmp_path)

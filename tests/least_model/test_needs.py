@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.least_model.motion import WithoutRest
@@ -27,6 +28,7 @@ def test_strong_friction_at_resonance_keeps_its_effect_on_the_motion() -> None:
     assert row["change_error"] < 1e-6
 
 
+@deep("more kernels to compile")
 def test_a_scene_that_needs_nothing_comes_down_to_the_closed_form() -> None:
     scene = fl.Scene(
         damping_ratio=0.1,

@@ -69,6 +69,7 @@ def solve(one, law, tolerance=1e-5, **keys):
 # --- against references ------------------------------------------------------------------------------------------
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize(
     ("kind", "stepper", "planar"),
     [
@@ -188,6 +189,7 @@ def test_rk4_is_stable_up_to_its_limit_and_not_beyond(speed):
     assert abs(slid("rk4", speed, 1.05 * limit, 60)) > 1e3 * rest
 
 
+@deep("more kernels to compile")
 @pytest.mark.parametrize("share", [-1.0, 0.0, 0.9])
 def test_the_exponential_stepper_ends_in_steady_slip_however_long_the_step(share):
     largest = STEADY.largest_deflection()
@@ -378,6 +380,7 @@ def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_err
     assert 1e-8 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 1e-6
 
 
+@deep("more kernels to compile")
 def test_a_driven_mass_that_slips_one_way_is_as_far_from_steady_sliding_as_the_error_says():
     law = Dahl(mu=0.4, presliding_length=0.1, exponent=3.0)
     driven = scene(15.0, normal_load=1.0, drive=Drive(unbalance=1.0, frequency=1.0))
@@ -405,6 +408,7 @@ def test_a_motion_on_bristles_that_never_repeats_has_a_mean_over_a_long_time():
     assert apart <= answers.columns["error"][0] + known_to
 
 
+@deep("more kernels to compile")
 def test_undriven_bristles_on_a_falling_curve_stick_and_slip_like_dry_friction():
     law = LuGre(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=0.1, presliding_length=1e-3)
     answers = solve(Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.1), law, 1e-3)

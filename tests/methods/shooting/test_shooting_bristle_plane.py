@@ -16,8 +16,7 @@ from frictionlab.methods.shooting.method import Shooting
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 MORE = pd.read_csv(REFERENCE / "bristle_more.csv")
-WHY = "the planar kernels of each law take half a minute to compile"
-compiling = deep(WHY)
+pytestmark = deep("planar kernels take long to compile")
 
 
 def scenes(belt_speeds: np.ndarray, omega_r: float, across: float = 10.0) -> list[fl.Scene]:
@@ -29,9 +28,7 @@ def scenes(belt_speeds: np.ndarray, omega_r: float, across: float = 10.0) -> lis
     ]
 
 
-@pytest.mark.parametrize(
-    "kind", [*(pytest.param(kind, marks=compiling) for kind in ("dahl", "lugre")), "dupont"]
-)
+@pytest.mark.parametrize("kind", ["dahl", "lugre", "dupont"])
 def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
     rows = MORE[(MORE["omega_r"] != "none") & (MORE["kind"] == kind)].fillna(1.0)
     assert len(rows) >= 6
@@ -77,7 +74,6 @@ def test_an_orbit_is_found_where_the_steps_of_a_map_jump_by_as_much_as_is_asked(
         assert abs(answers.columns["mean_friction"][0] - 0.13038352) <= answers.columns["error"][0] + 3e-10
 
 
-@compiling
 def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> None:
     gaps = []
     for length in (1.0, 1e-2, 1e-4):
@@ -96,7 +92,6 @@ def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> 
     assert gaps[0] > 20 * gaps[1] > 400 * gaps[2] or gaps[2] < 1e-6
 
 
-@compiling
 def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() -> None:
     law = fl.Dahl(mu=0.4, presliding_length=0.1)
     planar = with_columns(Shooting(), scenes([15.0], 0.5, across=0.0), law, 1e-8)
@@ -113,7 +108,6 @@ def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() 
     assert "x2 decays" in planar.model[0]
 
 
-@compiling
 def test_the_three_planar_forms_are_three_laws() -> None:
     means = {}
     for form in ("vectorial", "per-axis", "rotated"):

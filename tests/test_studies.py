@@ -26,6 +26,7 @@ SLOW = (
     "popov_contact_stiffness",
     "stick_slip_smoothed_friction",
     "fig2_weak_friction_off_resonance",
+    "fig9_transverse_at_resonance",
     "fig3_weak_friction_resonance",
     "fig7a_harmonic_balance_resonance",
     "fig7b_harmonic_balance_off_resonance",

@@ -86,6 +86,7 @@ def test_the_page_holds_every_table_and_every_chart(folder: Path, page: Page) ->
     assert all(picture.attributes["alt"] for picture in pictures)
 
 
+@deep("seconds of charts")
 def test_the_page_is_sound_and_needs_nothing_else(page: Page) -> None:
     assert page.wrong == []
     assert not {element.tag for element in page.elements} & {"script", "link", "iframe"}

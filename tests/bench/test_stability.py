@@ -48,7 +48,7 @@ def test_what_never_grows_has_no_limit_and_what_always_grows_no_stable_step() ->
         ("rk4", 0.5, "bristle", 2.7853),
         ("moreau", 0.25, "none", 4.0),
         ("moreau", 0.5, "none", math.inf),
-        ("exponential", 0.5, "bristle", math.inf),
+        pytest.param("exponential", 0.5, "bristle", math.inf, marks=deep("more kernels to compile")),
         pytest.param("sdirk2", 0.5, "bristle", math.inf, marks=deep("more kernels to compile")),
         ("smoothed", 0.5, "none", 6.394),
     ],

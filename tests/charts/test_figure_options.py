@@ -122,6 +122,7 @@ def test_widths_are_those_of_a_journal(laws: pd.DataFrame, width: str, millimetr
     assert _drawn(laws, width=width).get_figwidth() * 25.4 == pytest.approx(millimetres)
 
 
+@deep("seconds of figures")
 def test_formats_and_title_are_as_asked_for(laws: pd.DataFrame, tmp_path: Path) -> None:
     few = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
     draw_figures(FigureData(few, "Of before"), tmp_path)

@@ -151,6 +151,7 @@ def test_plot_and_report_make_again_what_a_run_made_and_compute_nothing(
     assert [(Path("out") / file).read_bytes() for file in files] == before
 
 
+@deep("seconds of runs")
 def test_a_run_without_a_sweep_has_nothing_to_plot_and_a_report(frictionlab: Any) -> None:
     frictionlab("run", study(sweep={}), "-o", "out")
     said = frictionlab("plot", "out")
@@ -179,6 +180,7 @@ def test_what_is_no_run_is_code_2_with_one_message(frictionlab: Any, command: st
     assert "give one of them: all/one" in said["all"].err
 
 
+@deep("seconds of runs")
 def test_a_page_that_cannot_be_written_is_code_3_with_the_table_safe(
     frictionlab: Any, monkeypatch: Any, drawn: None
 ) -> None:
@@ -280,6 +282,7 @@ def test_a_new_study_names_its_schema_to_editors_who_find_it_beside_the_file(fri
     assert schema.read_text() == "{}"
 
 
+@deep("seconds of runs")
 def test_the_table_is_on_disk_before_the_drawing_begins(frictionlab: Any, monkeypatch: Any) -> None:
     seen = []
     monkeypatch.setattr(
@@ -367,6 +370,7 @@ def test_a_folder_of_studies_runs_each_into_a_folder_of_its_own(frictionlab: Any
     assert sorted(path.name for path in Path("runs/set").iterdir()) == [".cache", "index.html", "one", "two"]
 
 
+@deep("seconds of runs")
 def test_a_run_prints_what_to_cite_for_it_and_computes_nothing_anew_for_that(frictionlab: Any) -> None:
     frictionlab("run", study(source="Dahl (1976)"), "-o", "out")
     said = frictionlab("run", "study.yaml", "-o", "out", "--cite")
@@ -378,6 +382,7 @@ def test_a_run_prints_what_to_cite_for_it_and_computes_nothing_anew_for_that(fri
     assert len(json.loads(Path("out/provenance.json").read_text())["runs"]) == 1
 
 
+@deep("seconds of runs")
 def test_publications_that_several_studies_draw_on_are_cited_once(frictionlab: Any) -> None:
     study("set/one.yaml")
     study("set/two.yaml", tolerance=1e-6, source="Dahl (1976)")
@@ -429,6 +434,7 @@ def test_an_expectation_that_fails_is_code_3(frictionlab: Any) -> None:
     assert "expect FAILED: " in frictionlab("run", "study.yaml", "--json").err
 
 
+@deep("seconds of runs")
 def test_a_full_disk_is_code_3_and_the_summary_is_printed(frictionlab: Any, monkeypatch: Any) -> None:
     def replace(source: Path, target: Path) -> None:
         if target.name == "results.parquet":
@@ -446,6 +452,7 @@ def test_a_full_disk_is_code_3_and_the_summary_is_printed(frictionlab: Any, monk
     assert len(json.loads(frictionlab("run", study(), "-o", "out", "--json").out)) == 4
 
 
+@deep("seconds of runs")
 def test_figures_that_cannot_be_written_are_code_3_with_the_table_safe(frictionlab: Any, drawn: None) -> None:
     Path("out").mkdir()
     Path("out/figures").write_text("in the way")
@@ -593,6 +600,7 @@ def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(
     assert [run["computed"] for run in runs] == [24 - first, first - second, second]
 
 
+@some(1, "a run each")
 @pytest.mark.parametrize("stage", ["_draw", "_report"])
 def test_an_interrupt_after_the_table_says_what_is_left_to_do(
     stage: str, frictionlab: Any, monkeypatch: Any

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from profiles import deep, some
+from profiles import deep
 
 from frictionlab.compile import cache, law_addresses
 from frictionlab.compile.cache import compiled
@@ -147,7 +147,7 @@ def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once
     assert compiled_once.kept() == before
 
 
-@some(1, "two processes each")
+@deep("two processes each")
 @pytest.mark.parametrize(
     ("name", "before", "after", "number"),
     [

@@ -50,6 +50,7 @@ def test_what_is_called_once_is_run_by_python(without_kernels):
     assert suffixes(without_kernels) == set()
 
 
+@deep("seconds of Python")
 def test_what_has_taken_long_enough_in_all_calls_together_is_compiled(without_kernels, monkeypatch):
     monkeypatch.setattr(call, "PYTHON_AT_MOST", 0.15)
     for _ in range(50):
@@ -136,6 +137,7 @@ def test_a_limit_of_time_is_that_of_one_thread():
     assert done == [1.0]
 
 
+@deep("seconds of Python")
 def test_threads_that_ask_at_once_are_given_whole_functions():
     """One was given a function whose names another thread had not filled in yet."""
     for _ in range(20):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from profiles import deep
 
 from frictionlab import registry
 from frictionlab.registry.bibliography import (
@@ -79,6 +80,7 @@ def test_no_two_entries_share_a_key_or_a_name() -> None:
     assert len(names) == len(set(names))
 
 
+@deep("reads all sources")
 def test_the_bibliography_holds_nothing_that_nobody_names() -> None:
     used = {each.key for kind in OURS for each in publications(inspect.getdoc(kind) or "", kind.bibtex)}
     studies = " ".join(file.read_text(encoding="utf-8") for file in STUDIES)

@@ -281,6 +281,7 @@ def test_nobody_takes_the_place_of_a_law_of_frictionlab(
     assert "that of frictionlab is used; rename the others" in said.err
 
 
+@deep("seconds of runs")
 def test_a_law_that_numba_cannot_compile_fails_its_points_with_the_authors_line(
     brings: Brings, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -10,6 +10,7 @@ from typing import Any, cast
 
 import pandas as pd
 import pytest
+from profiles import some
 
 from frictionlab.charts.figures import FigureData
 from frictionlab.report.answer import sentences
@@ -179,6 +180,7 @@ WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
 }
 
 
+@some(8, "answers of every kind")
 @pytest.mark.parametrize("which", WHO_IS_HIGHEST_WHERE)
 def test_the_first_sentence_says_who_is_highest_where(which: str) -> None:
     rows, wanted = WHO_IS_HIGHEST_WHERE[which]

@@ -130,6 +130,7 @@ def test_the_reader_of_pages_sees_what_is_wrong_with_one() -> None:
         assert complaint in found
 
 
+@deep("seconds of reports")
 def test_text_of_a_study_is_text_on_the_page(ran: Runner) -> None:
     page = page_of(ran(**ODD_STUDIES["markup everywhere"]))
 
@@ -191,6 +192,7 @@ def test_the_kind_of_a_scene_is_told_in_a_sentence(scene: dict[str, Any], words:
     assert words in page_of(ran(scene=scene)).all("main")[0].text
 
 
+@deep("seconds of reports")
 def test_there_is_a_line_for_every_curve_and_what_tells_it_apart(ran: Runner) -> None:
     sweep = {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0, 13.0]}
     head, *rows = page_of(ran(sweep=sweep)).table("Curves")
@@ -253,6 +255,7 @@ def test_a_point_that_is_ok_with_a_reservation_and_one_that_has_a_range_are_told
     assert second[:3] == ["ok, but", "1", "the error is above the tolerance"]
 
 
+@deep("seconds of reports")
 def test_how_it_is_known_that_a_state_is_the_only_one_is_no_trouble(ran: Runner) -> None:
     saved = ran(**at_speeds(1.0, 2.0, 3.0, 4.0))
     saved.table["unique"] = ["proved", "tested", None, "no"]
@@ -325,6 +328,7 @@ def test_many_expectations_are_folded_and_not_left_out_where_they_all_hold(ran: 
     ]
 
 
+@deep("seconds of reports")
 def test_errors_are_given_by_curve_and_no_tolerance_is_asked_of_a_long_time_mean(ran: Runner) -> None:
     saved = ran(**at_speeds(1.0, 2.0, 3.0), tolerance=1e-6)
     saved.table["error"] = [1e-9, 3e-5, 2e-4]
@@ -388,6 +392,7 @@ def test_sources_are_those_of_the_study_its_laws_and_the_methods_at_work(ran: Ru
     assert "Den Hartog" in page_of(saved).all("dl")[0].text
 
 
+@deep("seconds of reports")
 def test_where_auto_does_not_name_its_choice_all_it_may_choose_is_cited_as_such(ran: Runner) -> None:
     saved = ran(methods=["auto"], **at_speeds(60.0))
     saved.table["model"] = "closed form"
@@ -406,6 +411,7 @@ def test_what_gave_no_number_is_not_cited(ran: Runner) -> None:
     assert keys == {"frictionlab", "amontons1699", "coulomb1785", "sulollari"}
 
 
+@deep("seconds of reports")
 def test_sources_in_words_alone_are_cited_in_these_words(ran: Runner) -> None:
     text = bibtex([ran("one", source="My own & unpublished @ home"), ran("two", source="Yours")])
     entries = {each.key: each for each in read_bibtex(text)}
@@ -415,6 +421,7 @@ def test_sources_in_words_alone_are_cited_in_these_words(ran: Runner) -> None:
     assert text.count("@misc{frictionlab,") == 1
 
 
+@deep("seconds of reports")
 def test_the_page_shows_publications_in_full_and_as_bibtex(ran: Runner) -> None:
     saved = ran(source="Dahl (1968), section 2")
     page = page_of(saved)
@@ -423,6 +430,7 @@ def test_the_page_shows_publications_in_full_and_as_bibtex(ran: Runner) -> None:
     assert bibtex([saved]) in [block.text for block in page.all("pre")]
 
 
+@deep("seconds of reports")
 def test_versions_runs_and_overrides_are_those_of_the_account(tmp_path: Path, ran: Runner) -> None:
     saved = ran()
     account = json.loads((saved.folder / "provenance.json").read_text())
@@ -478,6 +486,7 @@ def test_captions_say_what_is_drawn_what_tells_curves_apart_and_what_is_held_fix
     assert first.description.endswith("mean friction coefficient μ̄: from 0.1015 to 0.1015.")
 
 
+@deep("seconds of reports")
 def test_a_first_figure_of_one_picture_stands_beside_what_is_said_of_it(ran: Runner) -> None:
     page = page_of(ran(title="All beyond V_lin", **at_speeds(1.0, 2.0)))
 
@@ -534,6 +543,7 @@ def test_a_length_that_was_left_out_is_told_as_taken(ran: Runner) -> None:
 LENGTHS: dict[str, dict[str, float]] = {"left_out": {}, "given": {"length_m": 0.02}}
 
 
+@deep("seconds of reports")
 def test_a_run_without_a_sweep_has_no_figures_and_no_heading_for_them(ran: Runner) -> None:
     page = page_of(ran(sweep={}))
 
@@ -541,6 +551,7 @@ def test_a_run_without_a_sweep_has_no_figures_and_no_heading_for_them(ran: Runne
     assert "Figures" not in [heading.text for heading in page.all("h2")]
 
 
+@deep("seconds of reports")
 def test_a_figure_that_is_not_there_is_said_to_be_missing(ran: Runner) -> None:
     saved = ran()
     (saved.folder / "figures" / "mean_friction.svg").unlink()
@@ -553,6 +564,7 @@ def test_a_figure_that_is_not_there_is_said_to_be_missing(ran: Runner) -> None:
 # The folder of a run
 
 
+@deep("seconds of reports")
 def test_the_page_made_from_the_folder_is_the_page_made_by_the_run(ran: Runner) -> None:
     saved = ran(title="A title", expect=[{"column": "error", "below": 1}])
 
@@ -571,6 +583,7 @@ def test_a_page_takes_its_name_from_the_study_its_file_or_the_folder(tmp_path: P
     assert ran("y", title="The title").title == "The title"
 
 
+@deep("seconds of reports")
 def test_title_source_and_expectations_may_be_edited_in_the_folder(ran: Runner) -> None:
     saved = ran(title="Old")
     edited(saved.folder, "Old", "New")

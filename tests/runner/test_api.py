@@ -21,7 +21,7 @@ import pandas as pd
 import pytest
 from fake_methods import Another, Fake, breaks_down, faked, is_broken, is_wrong, register
 from pandas.testing import assert_frame_equal
-from profiles import deep
+from profiles import deep, some
 from run_folders import without_stamps
 
 import frictionlab as fl
@@ -309,6 +309,7 @@ def test_finished_points_are_taken_over(tmp_path: Path, trouble: Trouble) -> Non
     assert "Only the title" in (tmp_path / "out" / "study.yaml").read_text()
 
 
+@deep("seconds of runs")
 def test_no_method_is_loaded_where_every_point_is_finished(tmp_path: Path, monkeypatch: Any) -> None:
     plan = parse_study(study())
     fl.run(plan, out=tmp_path / "out")
@@ -359,6 +360,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(
     assert fl.run(slow, out=tmp_path / "out").computed == len(killed)
 
 
+@deep("seconds of runs")
 def test_another_study_is_refused_a_folder_that_is_taken(tmp_path: Path) -> None:
     fl.run(study(), out=tmp_path / "out")
     before = {path: path.read_bytes() for path in (tmp_path / "out").iterdir()}
@@ -393,6 +395,7 @@ def test_another_version_is_refused_a_folder_that_is_taken(tmp_path: Path, monke
         fl.run(study(), out=tmp_path / "out")
 
 
+@deep("seconds of runs")
 def test_replacing_results_takes_away_those_of_the_other_study_and_nothing_else(tmp_path: Path) -> None:
     out = tmp_path / "out"
     fl.run(study(keep={"orbit": 4}), out=out)
@@ -438,6 +441,7 @@ def disk_full_for(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
     return fill
 
 
+@some(1, "a run each")
 @pytest.mark.parametrize("name", ["results.parquet", "results.csv", "orbits.parquet"])
 def test_a_full_disk_leaves_the_table_in_hand(
     tmp_path: Path, disk_full_for: Callable[[str], None], name: str
@@ -459,6 +463,7 @@ def test_a_disk_that_is_full_at_the_start_stops_the_run_before_it_computes(
         fl.run(study(), out=tmp_path / "out")
 
 
+@deep("seconds of runs")
 def test_orbits_are_kept_row_by_row_and_survive_an_interruption(tmp_path: Path) -> None:
     kept = study(keep={"orbit": 4})
     whole = fl.run(kept, out=tmp_path / "out")
@@ -479,6 +484,7 @@ def test_orbits_are_kept_row_by_row_and_survive_an_interruption(tmp_path: Path) 
     assert_frame_equal(pd.read_parquet(tmp_path / "out" / "orbits.parquet"), whole.orbits)
 
 
+@deep("seconds of runs")
 def test_asking_for_other_orbits_computes_them(tmp_path: Path) -> None:
     fl.run(study(), out=tmp_path / "out")
     assert fl.run(study(keep={"orbit": 4}), out=tmp_path / "out").computed == 6

@@ -77,6 +77,7 @@ def test_starts_are_told_with_their_distance_and_time() -> None:
     assert "unique: " not in many.model + two.model
 
 
+@deep("seconds of maps")
 def test_other_states_are_told() -> None:
     weak = fl.Drive(amplitude=0.05, frequency=3.0)
     falls = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": weak, "belt_speed": 0.6}

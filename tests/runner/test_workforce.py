@@ -24,6 +24,8 @@ from frictionlab.runner.workforce import Workforce
 from frictionlab.study import parse_study
 from frictionlab.study.yaml_text import yaml_text
 
+pytestmark = deep("processes")
+
 STUDY: dict[str, Any] = {
     "schema": 1,
     "scene": {"damping_ratio": 0.1, "normal_load": 10, "drive": {"unbalance": 10, "frequency": 1}},
@@ -35,8 +37,7 @@ SCRIPT = Path(__file__).parents[1] / "killed_workers.py"
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-@deep("processes that are killed")
-@pytest.mark.parametrize("way", ["processes", "cluster", pytest.param("parts", marks=deep("six processes"))])
+@pytest.mark.parametrize("way", ["processes", "cluster", pytest.param("parts")])
 def test_workers_that_are_killed_change_nothing(way: str) -> None:
     if way == "cluster":
         pytest.importorskip("distributed")
@@ -170,7 +171,6 @@ for task in tasks:
 """
 
 
-@deep("processes")
 def test_the_job_array_of_the_docs_solves_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (DOCS / "cost.md").read_text()
     (script,) = re.findall(r"<!-- slurm -->\n```sh\n(.*?)```", text, re.DOTALL)

@@ -89,6 +89,7 @@ class Ordered(fl.SlidingLaw):
         return self.mu
 
 
+@deep("seconds of checks")
 def test_a_point_inside_a_large_grid_that_cannot_be_built_is_a_mistake_when_it_is(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -165,6 +165,7 @@ def test_two_files_of_one_name_are_kept_under_two() -> None:
     assert load_study("out/study.yaml") == done.study
 
 
+@deep("seconds of runs")
 def test_points_of_an_edited_law_are_not_taken_over(capsys: pytest.CaptureFixture[str]) -> None:
     fl.run(study(), out="out")
     assert fl.run(study(), out="out").computed == 0
@@ -237,6 +238,7 @@ def test_a_name_is_given_once(capsys: pytest.CaptureFixture[str]) -> None:
         load_study(twice)
 
 
+@deep("seconds of runs")
 def test_the_command_line_takes_files_of_laws(capsys: pytest.CaptureFixture[str]) -> None:
     path, law = study(), "laws/my_law.py"
     path.write_text(path.read_text().replace("plugins: [laws/my_law.py]\n", ""))

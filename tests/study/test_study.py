@@ -406,6 +406,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
     ]
 
 
+@some(40, "mistakes of every kind")
 @pytest.mark.parametrize(("old", "new", "said"), EDITS, ids=[said for _, _, said in EDITS])
 def test_one_mistake_gives_one_message_at_its_place(written: Any, old: str, new: str, said: str) -> None:
     assert GOOD.count(old) >= 1

@@ -72,6 +72,7 @@ def test_an_expected_failure_needs_its_reason_and_fails_where_the_law_passes() -
         check_law(Lopsided, expected_failures={"oddness": " "})
 
 
+@deep("seconds of a battery")
 def test_a_check_that_ran_nothing_has_failed() -> None:
     @law_check()
     def never(one: Given) -> None:

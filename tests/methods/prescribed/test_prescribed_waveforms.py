@@ -11,7 +11,7 @@ import pytest
 from answered import with_columns
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from profiles import deep, some
+from profiles import deep
 from scipy.integrate import quad, solve_ivp
 
 from frictionlab.laws.coulomb import Coulomb
@@ -176,7 +176,7 @@ def followed(one: Scene, law: Any, steps: int = 30000) -> float:
     return -total / steps
 
 
-@some(1, "seconds of steps")
+@deep("seconds of steps")
 @pytest.mark.parametrize("waveform", ["square", "sawtooth", ONE_SIDED])
 @pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, stiffness=4.0)], ids=lambda law: type(law).__name__)
 def test_a_bristle_follows_any_waveform(law: Any, waveform: Any) -> None:

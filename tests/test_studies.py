@@ -6,10 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
-from profiles import DEEP, deep
+from profiles import deep
 
 import frictionlab as fl
-from frictionlab.laws.memory import BristleLaw
 from frictionlab.runner.plan import plan
 from frictionlab.study import load_study
 
@@ -19,39 +18,38 @@ SI = sorted((PROJECT / "studies" / "si").glob("*.yaml"))
 STUDIES = sorted(path for path in (PROJECT / "studies").rglob("*.yaml") if path.parent.name != "measured")
 
 
-SLOW = (
-    "not_unique_stribeck",
-    "bifurcation_stribeck",
-    "prescribed_curve_shapes_lugre",
-    "popov_contact_stiffness",
-    "stick_slip_smoothed_friction",
-    "fig2_weak_friction_off_resonance",
-    "fig9_transverse_at_resonance",
-    "fig3_weak_friction_resonance",
-    "fig7a_harmonic_balance_resonance",
-    "fig7b_harmonic_balance_off_resonance",
-    "popov_normal_phase",
-    "prescribed_curve_shapes_dahl",
-    "prescribed_elastic_range",
-    "prescribed_force_sign_dahl",
-    "prescribed_longitudinal_softness",
-    "prescribed_shape_measures_dahl",
-    "teidelt_compliant_pin",
-)
-"""Studies with kernels that no other test needs, or of many steps."""
-
-
-def is_for_the_deep_profile(study: Path) -> bool:
-    """Whether a study puts a free body on bristles, or a slip across the belt: such kernels take long to compile."""
-    if study.stem in SLOW or study in SI:
-        return True
-    plan = load_study(study)
-    long = any(
-        along.scene.degrees_of_freedom > 0 or along.scene.transverse_slip is not None
-        for along, _ in plan.scenes_along
-    )
-    bristles = any(isinstance(law, BristleLaw) for choice in plan.laws for law in plan.laws_in_scenes(choice))
-    return long and bristles
+BY_DEFAULT = [
+    "application_slip_joint",
+    "application_ultrasonic_contact",
+    "closed_form_below_resonance",
+    "damping_at_resonance",
+    "den_hartog",
+    "fig10_phases_at_twice_the_resonance",
+    "fig11_phases_at_resonance",
+    "fig4_strong_friction",
+    "fig5_vibration_amplitude",
+    "fig6_energy",
+    "fig8a_longitudinal_load",
+    "fig8a_transverse_resonance",
+    "fig8b_transverse_resonance",
+    "fractional_body",
+    "frequency_map",
+    "internal_resonance",
+    "michaux_waveforms",
+    "plate_under_slider",
+    "prescribed_no_reversal_lugre",
+    "rival_bodies",
+    "rival_materials",
+    "stick_slip_two_levels",
+    "storck_along_and_across",
+    "thomsen_fidlin",
+    "thomsen_smoothing",
+]
+"""Studies whose kernels other tests need, too, and that take no seconds."""
+EVERY = [
+    pytest.param(study, marks=() if study.stem in BY_DEFAULT else deep("seconds, or kernels of its own"))
+    for study in STUDIES
+]
 
 
 @deep("reads all studies")
@@ -71,10 +69,8 @@ def test_every_study_in_units_is_planned_with_a_method() -> None:
         assert not any(planned.refused for planned in plan(load_study(study)))
 
 
-@pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("study", EVERY, ids=lambda path: path.stem)
 def test_everything_a_study_expects_holds(study: Path) -> None:
-    if not DEEP and is_for_the_deep_profile(study):
-        pytest.skip("bodies on bristles, slip across the belt and slow kernels are in the deep profile")
     done = fl.run(study)
 
     assert done.verdicts

@@ -127,7 +127,6 @@ def test_the_same_run_again_makes_only_pages_that_are_gone_or_changed(
     assert len(made) == 2
 
 
-@deep("seconds of reports")
 def test_plot_and_report_make_again_what_a_run_made_and_compute_nothing(
     frictionlab: Any, monkeypatch: Any, drawn: None
 ) -> None:

@@ -17,8 +17,6 @@ from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.columns import ATTRACTORS, OF_STATES
 from frictionlab.runner import study_run
 
-pytestmark = deep("seconds of maps")
-
 STUDY = """
 schema: 1
 scene:
@@ -57,6 +55,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@deep("seconds of maps")
 def test_every_state_is_a_row_per_point_and_only_of_methods_that_follow_motions(ran: Path) -> None:
     table = pd.read_csv(ran / "out" / "attractors.csv")
 
@@ -68,6 +67,7 @@ def test_every_state_is_a_row_per_point_and_only_of_methods_that_follow_motions(
     assert states["point"].max().tolist() == states["period"].max().tolist() == [3, 2, 3, 2, 2]
 
 
+@deep("seconds of maps")
 def test_the_figure_shows_every_period_in_colour_and_in_grey(ran: Path) -> None:
     picture = plt.imread(ran / "out" / "figures" / "bifurcation.png")[..., :3]
     grey = picture @ [0.299, 0.587, 0.114]
@@ -77,12 +77,14 @@ def test_the_figure_shows_every_period_in_colour_and_in_grey(ran: Path) -> None:
     assert (grey < 0.55).mean() > 0.005
 
 
+@deep("seconds of maps")
 def test_the_report_tells_the_periods(ran: Path) -> None:
     page = (ran / "out" / "report.html").read_text()
 
     assert "periods of the response found: 2, 3." in page
 
 
+@deep("seconds of maps")
 def test_the_same_study_takes_them_over(ran: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     counts: list[int] = []
 

@@ -52,7 +52,7 @@ def test_the_registered_name_is_the_name_of_the_class_and_of_its_file(name):
 @every_law
 def test_the_law_conforms(name):
     """Symmetry, units and all that it declares: what the battery asks of any law in Python."""
-    check_law(law_class(name), only=OF_EVERY_LAW, examples=12 if DEEP else 2)
+    check_law(law_class(name), only=OF_EVERY_LAW, examples=12 if DEEP else 4)
 
 
 @pytest.mark.parametrize("name", [name for name in LAWS if name not in BRISTLE_LAWS])

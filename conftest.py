@@ -7,6 +7,7 @@ ones by the hundred, and runs every test. Plugins enter by the door they use whe
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import signal
 import sys
@@ -62,6 +63,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     own = set(kept)
     config.hook.pytest_deselected(items=[item for item in items if item not in own])
     items[:] = kept
+
+
+def pytest_collection_finish() -> None:
+    """Keep searches for garbage from all that collecting the tests has made."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

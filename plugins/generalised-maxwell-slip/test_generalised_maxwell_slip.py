@@ -71,7 +71,6 @@ def test_the_reference_of_constant_friction_is_maxwell_slip_along_a_line(name):
     assert off - float(row["accuracy"]) <= found.error <= TOLERANCE
 
 
-@deep("more kernels to compile")
 def test_equal_elements_of_constant_friction_are_jenkins_along_a_line():
     law = GeneralisedMaxwellSlip(share=[1, 1, 1], stiffness=[4 / 3] * 3, mu_kinetic=0.4, attraction=2)
 
@@ -138,7 +137,6 @@ def test_time_steps_which_remember_no_stick_are_refused():
     assert "march steps follow no stick or slip of single elements; shooting does" in found.reason
 
 
-@deep("more kernels to compile")
 def test_its_study_keeps_its_promises():
     done = fl.run(Path(__file__).parent / "study.yaml")
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.runner.solve import FROM_METHODS, number_columns
 from frictionlab.scene.scene import Scene
 

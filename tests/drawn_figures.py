@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
 from frictionlab.charts.figures import FigureData, figures_of
-from frictionlab.charts.style import STYLE
-from frictionlab.columns import RESULTS, TEXT
+from frictionlab.charts.sheet import STYLE
+from frictionlab.values.columns import RESULTS, TEXT
 
 Curve = tuple[np.ndarray, np.ndarray]
 NOTHING = dict.fromkeys((name for name in RESULTS if name not in TEXT), np.nan)

@@ -22,10 +22,9 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 import frictionlab as fl
+from frictionlab.analysis.fit.equivalent import Norm
 from frictionlab.charts.maps import cell_edges
-from frictionlab.charts.sheet import NO_HEADING, Sheet
-from frictionlab.charts.style import CYCLE, STYLE, write_figure
-from frictionlab.fitting.equivalent import Norm
+from frictionlab.charts.sheet import CYCLE, NO_HEADING, STYLE, Sheet, write_figure
 from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudinal, mean_soft_dahl
 
 FIGURES = Path(__file__).parents[1] / "docs" / "figures"

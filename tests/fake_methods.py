@@ -11,13 +11,13 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import NonNegative
-from frictionlab.registry import BrokenPlugin
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
+from frictionlab.study import registry
+from frictionlab.study.registry import BrokenPlugin
+from frictionlab.values.quantities import NonNegative
 
 
 def breaks_down() -> None:

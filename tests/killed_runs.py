@@ -21,9 +21,9 @@ from pandas.testing import assert_frame_equal
 from frictionlab import cli
 from frictionlab.charts import figures  # noqa: F401  # imported once, before the copies
 from frictionlab.methods.exact import method  # noqa: F401  # the same
-from frictionlab.report import write_report  # noqa: F401  # the same
+from frictionlab.report.page import write_report  # noqa: F401  # the same
 from frictionlab.runner import api  # noqa: F401  # the same
-from frictionlab.runner.errors import FolderError
+from frictionlab.runner.files import FolderError
 from frictionlab.runner.saved import read_saved
 
 STUDY = """schema: 1

@@ -109,7 +109,7 @@ def by_cluster(given: dict[str, Any], out: Path, kills: int, draw: random.Random
 
 def by_parts(given: dict[str, Any], out: Path, kills: int, draw: random.Random) -> tuple[Any, int]:
     """The table gathered from parts that were solved by processes of their own, in random order."""
-    from frictionlab.study.yaml_text import yaml_text
+    from frictionlab.study.written import yaml_text
 
     file = out.parent / "study.yaml"
     file.write_text(yaml_text(given))

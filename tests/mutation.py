@@ -27,8 +27,8 @@ from _pytest.runner import runtestprotocol
 from mutants import Mutant, mutants
 from profiles import DEEP
 
-from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.study import registry
 from frictionlab.testing import CHECKS, check_law, running
 from frictionlab.testing.strategies import quietly, unloaded_laws
 
@@ -144,7 +144,9 @@ def _names(function: FunctionType) -> tuple[Path, str]:
 
 def _of(files: list[Path], every: int) -> list[Mutant]:
     folders = [ROOT / "frictionlab" / name for name in ("laws", "theory")]
-    files = files or [file for folder in folders for file in sorted(folder.glob("*.py"))]
+    files = files or [
+        file for folder in folders for file in sorted(folder.glob("*.py")) if file.name != "faults.py"
+    ]
     return [mutant for file in files for mutant in list(mutants(file.resolve()))[::every]]
 
 

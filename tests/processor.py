@@ -7,7 +7,7 @@ import os
 import llvmlite.binding
 import numpy as np
 
-from frictionlab.runner.machine import machine_and_versions
+from frictionlab.runner.folder_files import machine_and_versions
 
 SETTINGS = "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NPY_DISABLE_CPU_FEATURES", "OPENBLAS_CORETYPE"
 """What the environment may ask of compilers and libraries."""

@@ -29,10 +29,14 @@ OLDEST = "oldest"
 EXTRAS = "certify", "xarray"
 TESTS = (
     "tests/test_readme.py",
-    "tests/explore",
+    "tests/report/test_explorer.py",
+    "tests/report/test_page_solver.py",
     "tests/methods/exact/test_exact.py",
-    "tests/notebook",
-    "tests/results",
+    "tests/report/test_compared_laws.py",
+    "tests/runner/test_csv_text.py",
+    "tests/runner/test_expectations.py",
+    "tests/runner/test_in_si.py",
+    "tests/runner/test_shape_points.py",
     "tests/scene",
     "tests/study/test_study.py",
     "tests/theory",

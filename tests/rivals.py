@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 import frictionlab as fl
-from frictionlab.charts.sheet import NO_HEADING, Sheet
-from frictionlab.charts.style import CYCLE, STYLE, write_figure
+from frictionlab.charts.sheet import CYCLE, NO_HEADING, STYLE, Sheet, write_figure
 from frictionlab.theory import mean_prescribed_longitudinal, mean_soft_dahl
 
 FIGURES = Path(__file__).parents[1] / "docs" / "figures"

@@ -10,9 +10,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
+from frictionlab.study import registry
 
 PROJECT = Path(__file__).parents[1]
 PAGE = PROJECT / "docs" / "which.md"

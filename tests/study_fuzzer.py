@@ -9,10 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from frictionlab.mistakes.notes import StudyError
-from frictionlab.printable import printable
-from frictionlab.study import Study, load_study, parse_study, read_back
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.load import load_study, parse_study, read_back
+from frictionlab.study.study import Study
+from frictionlab.study.written import yaml_text
+from frictionlab.values.notes import StudyError
+from frictionlab.values.printable import printable
 
 LONGEST = 10.0
 """Time [s] of one processor that one study may take."""

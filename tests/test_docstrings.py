@@ -12,8 +12,8 @@ import matplotlib
 import pytest
 
 import frictionlab as fl
-from frictionlab.least_model.result import Needs
-from frictionlab.results.run import Run
+from frictionlab.analysis.needs.needs import Needs
+from frictionlab.runner.run import Run
 
 RESULTS = fl.Comparison, fl.SteadyState, Run, Needs
 """What users are handed: every method and property of theirs is public."""

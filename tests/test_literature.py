@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.study import StudyError, parse_study
+from frictionlab.study.load import parse_study
+from frictionlab.values.notes import StudyError, WrongValues
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import frictionlab
 PACKAGE = Path(frictionlab.__file__).parent
 ROLES = {"command", "on_the_line", "in_the_plane", "stepper"}
 """Names of a role: the command of a file, one thing along a line and in the plane, the function that makes a step."""
-OPEN = ("dynamics", "methods", "numerics")
+OPEN = ("motion", "methods")
 """Rooms of kernels whose names are still being told apart."""
 MOST_OPEN = 41
 """Names with two meanings that are left in them: lower it, never raise it."""

@@ -11,8 +11,8 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.results.summary import summary
-from frictionlab.study import load_study
+from frictionlab.runner.summary import summary
+from frictionlab.study.load import load_study
 
 DOCS = Path(__file__).parent.parent / "docs"
 

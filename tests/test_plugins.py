@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from profiles import deep
 
-from frictionlab.study import load_study
+from frictionlab.study.load import load_study
 
 PROJECT = Path(__file__).parent.parent
 FOLDERS = sorted(path.parent for path in PROJECT.glob("plugins/*/pyproject.toml"))

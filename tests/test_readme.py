@@ -12,11 +12,11 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.charts.figures import FIGURES
-from frictionlab.columns import CURVES, ONSETS, RESULTS, SI
-from frictionlab.mistakes.validation import number_paths, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
-from frictionlab.study import load_study
+from frictionlab.study.load import load_study
+from frictionlab.values.columns import CURVES, ONSETS, RESULTS, SI
+from frictionlab.values.validation import number_paths, value_paths
 
 PROJECT = Path(__file__).parent.parent
 README = (PROJECT / "README.md").read_text()

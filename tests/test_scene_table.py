@@ -10,7 +10,7 @@ from profiles import deep
 from scene_table import LAWS, METHODS, PAGE, SCENES, law_of, refusal
 
 import frictionlab as fl
-from frictionlab import registry
+from frictionlab.study import registry
 
 
 def test_the_tables_are_those_of_the_methods() -> None:

@@ -9,8 +9,8 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.runner.plan import plan
-from frictionlab.study import load_study
+from frictionlab.runner.batch import plan
+from frictionlab.study.load import load_study
 
 PROJECT = Path(__file__).parent.parent
 SI = sorted((PROJECT / "studies" / "si").glob("*.yaml"))

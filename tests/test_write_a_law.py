@@ -18,7 +18,7 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.runner.saved import read_saved
-from frictionlab.study import load_study
+from frictionlab.study.load import load_study
 
 PAGE = (Path(__file__).parents[1] / "docs" / "write_a_law.md").read_text()
 COMMANDS = [

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 from ruamel.yaml import YAML
 
-from frictionlab.study import load_study
 from frictionlab.study.figure_options import FIGURE_NAMES
+from frictionlab.study.load import load_study
 
 GALLERY = Path(__file__).parent
 STUDIES = GALLERY.parent.parent / "studies"

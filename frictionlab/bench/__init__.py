@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from frictionlab.bench.listed import Bench, UnknownCurve, bench_summary, measure
 from frictionlab.bench.reading import load_bench
-from frictionlab.bench.sections import Section, SectionResult
+from frictionlab.bench.record import Section, SectionResult
 
 __all__ = [
     "Bench",

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from frictionlab.bench.curve import BenchCurve
+from frictionlab.bench.record import Section, SectionResult
 from frictionlab.bench.report import left_out
-from frictionlab.bench.sections import Section, SectionResult
 from frictionlab.compile.call import compiling_at_once
 
 

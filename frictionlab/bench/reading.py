@@ -12,27 +12,33 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import AfterValidator
 
-from frictionlab import columns
-from frictionlab.bench.curve import BenchCurve
-from frictionlab.bench.failures.measure import MapTruth
-from frictionlab.bench.failures.record import FailureMap, NamedPoint
-from frictionlab.bench.failures.section import failure_sections
+from frictionlab.bench.curve import BenchCurve, BenchedModel, ModelsSection
+from frictionlab.bench.failure_maps import FailureMap, MapTruth, NamedPoint
+from frictionlab.bench.failures import failure_sections
 from frictionlab.bench.listed import Bench
-from frictionlab.bench.models import BenchedModel, ModelsSection
-from frictionlab.bench.orders.section import OrdersSection
+from frictionlab.bench.orders import OrdersSection
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.peers.listing import PEERS
-from frictionlab.bench.record import BenchSetting, Contender, ReferenceSource, Workload
-from frictionlab.bench.sections import FILLED, AtLeastOne, Section, file_stem
-from frictionlab.bench.stability.section import StabilityMaps
+from frictionlab.bench.record import (
+    FILLED,
+    AtLeastOne,
+    BenchSetting,
+    Contender,
+    ReferenceSource,
+    Section,
+    Workload,
+    file_stem,
+)
+from frictionlab.bench.stability import StabilityMaps
 from frictionlab.methods.base import Method
-from frictionlab.mistakes.notes import Mistake, Notes, Path, StudyError, dotted
-from frictionlab.mistakes.validation import build_record
-from frictionlab.quantities import Positive, Record
-from frictionlab.study import Study
-from frictionlab.study.choices import items, method_choice
 from frictionlab.study.load import read_study
+from frictionlab.study.parts import items, method_choice
+from frictionlab.study.study import Study
 from frictionlab.study.yaml_source import Source, read_file
+from frictionlab.values import columns
+from frictionlab.values.notes import KeyPath, Mistake, Notes, StudyError, dotted
+from frictionlab.values.quantities import Positive, Record
+from frictionlab.values.validation import build_record
 
 BENCH_SCHEMA = 1
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
@@ -178,7 +184,7 @@ class _Reader:
 
     # --- blocks: a study each -------------------------------------------------------------------------------------
 
-    def _blocks(self, kind: type[_KeysT], keys: ListKeys, head: str) -> Iterator[tuple[Path, _KeysT]]:
+    def _blocks(self, kind: type[_KeysT], keys: ListKeys, head: str) -> Iterator[tuple[KeyPath, _KeysT]]:
         """The blocks of a key of the list, with their places; none whose own keys are wrong."""
         for index, given in enumerate(getattr(keys, head)):
             if (block := build_record(kind, given, (head, index), self.notes)) is not None:
@@ -219,7 +225,7 @@ class _Reader:
         self._note_equal([truth.drawn.name for truth, _ in found], ("failures",))
         return [*failure_sections(found)]
 
-    def _swept(self, study: Study, path: Path) -> tuple[str, str] | None:
+    def _swept(self, study: Study, path: KeyPath) -> tuple[str, str] | None:
         """The path of the belt speed and that of the other quantity."""
         if len(study.laws) != 1:
             self.notes.add((*path, "laws"), f"a map has one law, got {len(study.laws)}")
@@ -232,11 +238,11 @@ class _Reader:
             return None
         return speeds[0], others[0]
 
-    def _points(self, block: MapBlock, path: Path, paths: tuple[str, str]) -> Iterator[NamedPoint]:
+    def _points(self, block: MapBlock, path: KeyPath, paths: tuple[str, str]) -> Iterator[NamedPoint]:
         """``[{name: S2, scene.belt_speed: 0.5, scene.normal_load: 10}]``."""
         notes, keys = self.notes, ("name", *paths)
         for index, item in enumerate(block.points):
-            at: Path = (*path, "points", index)
+            at: KeyPath = (*path, "points", index)
             if notes.mapping(item, at, keys) is None:
                 continue
             for key in (key for key in keys if key not in item):
@@ -263,7 +269,7 @@ class _Reader:
             if found:
                 yield ModelsSection(f"models_{file_stem(block.name)}", block.title, tuple(found))
 
-    def _scenes(self, block: ModelsBlock, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    def _scenes(self, block: ModelsBlock, path: KeyPath) -> Iterator[tuple[str, dict[str, Any]]]:
         """The study of a block, and that without each part of the scene that simpler ones lack."""
         told = _told(block)
         yield "", told
@@ -274,7 +280,7 @@ class _Reader:
             else:
                 yield f"without {part}", told | {"scene": left}
 
-    def _curve(self, told: dict[str, Any], path: Path) -> Study | None:
+    def _curve(self, told: dict[str, Any], path: KeyPath) -> Study | None:
         """The study of a block that sweeps the belt speed alone."""
         sweep = told.get("sweep")
         stray = [key for key in sweep if key not in columns.BELT_SPEEDS] if isinstance(sweep, dict) else []
@@ -285,7 +291,7 @@ class _Reader:
         study = self._study(told, path)
         return None if stray else study
 
-    def _study(self, told: dict[str, Any], path: Path) -> Study | None:
+    def _study(self, told: dict[str, Any], path: KeyPath) -> Study | None:
         """The scene, laws and sweep as the study they are, read by the study's own reader."""
         keys, values = (
             {at[len(path) :]: place for at, place in places.items() if at[: len(path)] == path}
@@ -303,7 +309,7 @@ class _Reader:
     # --- who is measured ------------------------------------------------------------------------------------------
 
     def _measured(
-        self, block: ListItem, path: Path, shared: dict[str, Contender] | None = None
+        self, block: ListItem, path: KeyPath, shared: dict[str, Contender] | None = None
     ) -> tuple[Contender, ...]:
         """The methods and peers of a block, and those of all."""
         found = (shared or {}) | self._contenders(block, path)
@@ -311,12 +317,12 @@ class _Reader:
             self.notes.add(path, "no methods and no peers: there is nothing to measure")
         return tuple(found.values())
 
-    def _contenders(self, told: Measured, path: Path) -> dict[str, Contender]:
+    def _contenders(self, told: Measured, path: KeyPath) -> dict[str, Contender]:
         """The methods and peers of a list or of one of its blocks, by label."""
         found: dict[str, Contender] = {}
         for head in ("methods", "peers"):
             for index, item in enumerate(getattr(told, head)):
-                at: Path = (*path, head, index)
+                at: KeyPath = (*path, head, index)
                 made = self._contender({"kind": item} if isinstance(item, str) else item, at, head)
                 if made is not None and made.label in found:
                     self.notes.add(at, f"'{made.label}' is there already; give each its own label")
@@ -324,7 +330,7 @@ class _Reader:
                     found[made.label] = made
         return found
 
-    def _contender(self, item: Any, path: Path, head: str) -> Contender | None:
+    def _contender(self, item: Any, path: KeyPath, head: str) -> Contender | None:
         """A method or peer; one of its values may be a list, which is run through."""
         if self.notes.mapping(item, path) is None:
             return None
@@ -348,14 +354,14 @@ class _Reader:
         kind = str(item["kind"])
         return Contender(str(item.get("label", kind)), kind, tuple(solvers), points) if solvers else None
 
-    def _method(self, told: dict[str, Any], path: Path) -> Method | None:
+    def _method(self, told: dict[str, Any], path: KeyPath) -> Method | None:
         if told.get("kind") == "auto":
             self.notes.add((*path, "kind"), "auto only chooses: name the methods it chooses from")
             return None
         choice = method_choice(told, path, self.notes)
         return None if choice is None else choice.method
 
-    def _peer(self, told: dict[str, Any], path: Path) -> Peer | None:
+    def _peer(self, told: dict[str, Any], path: KeyPath) -> Peer | None:
         name = self.notes.one_of(told.get("kind"), (*path, "kind"), PEERS)
         if name is None or not self.notes.text(told.get("label", name), (*path, "label")):
             return None
@@ -364,13 +370,13 @@ class _Reader:
 
     # --- references -----------------------------------------------------------------------------------------------
 
-    def _references(self, told: Measured, path: Path, files: bool = True) -> tuple[ReferenceSource, ...]:
+    def _references(self, told: Measured, path: KeyPath, files: bool = True) -> tuple[ReferenceSource, ...]:
         """The references of a list or of one of its blocks; files: whether a table of values is of use."""
         places = [(*path, "references", index) for index in range(len(told.references))]
         read = [self._reference(item, at, files) for item, at in zip(told.references, places, strict=True)]
         return tuple(trusted for trusted in read if trusted is not None)
 
-    def _reference(self, item: Any, path: Path, files: bool) -> ReferenceSource | None:
+    def _reference(self, item: Any, path: KeyPath, files: bool) -> ReferenceSource | None:
         if self.notes.mapping(item, path) is None:
             return None
         if "values" in item:
@@ -386,7 +392,7 @@ class _Reader:
         label = f"{told.get('label', solver.name)} at {asked.tolerance:g}"
         return ReferenceSource(label, solver.name, solver, asked.tolerance, {})
 
-    def _values(self, item: dict[str, Any], path: Path, files: bool) -> ReferenceSource | None:
+    def _values(self, item: dict[str, Any], path: KeyPath, files: bool) -> ReferenceSource | None:
         if not files:
             self.notes.add(path[:-1], "give methods: a table of values knows one curve of one model alone")
             return None
@@ -396,7 +402,7 @@ class _Reader:
             return None
         return ReferenceSource(told.label or told.values, "", None, told.error, table)
 
-    def _table(self, file: FilePath, path: Path) -> dict[float, float] | None:
+    def _table(self, file: FilePath, path: KeyPath) -> dict[float, float] | None:
         """Mean friction by belt speed."""
         try:
             with file.open(encoding="utf-8", newline="") as text:
@@ -410,7 +416,7 @@ class _Reader:
             return {speed: mean for speed, mean in rows}
         return None
 
-    def _note_equal(self, names: Sequence[str], path: Path) -> None:
+    def _note_equal(self, names: Sequence[str], path: KeyPath) -> None:
         """Two of one name would be written to one file."""
         stems = [file_stem(name).casefold() for name in names]
         for place, name in enumerate(names):

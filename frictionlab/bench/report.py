@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from frictionlab.bench.record import BENCH_STATUSES, Contender, ReferenceMeans, Row
-from frictionlab.bench.sections import cell
+from frictionlab.bench.record import BENCH_STATUSES, Contender, ReferenceMeans, Row, cell
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 

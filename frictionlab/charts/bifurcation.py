@@ -16,16 +16,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.sheet import Heading, Sheet, write_title
-from frictionlab.charts.style import COLUMN, PAGE, blank_figure
-from frictionlab.columns import (
-    BELT_SPEEDS,
-    INPUTS,
-    SHOWN_IN,
-    shown_column,
-    unit_shown,
-    word,
-)
+from frictionlab.charts.sheet import COLUMN, PAGE, Heading, Sheet, blank_figure, write_title
+from frictionlab.values.columns import BELT_SPEEDS, INPUTS, SHOWN_IN, shown_column, unit_shown, word
 
 PERIOD_MARKERS: dict[int, tuple[str, str]] = {
     1: ("o", "#000000"),

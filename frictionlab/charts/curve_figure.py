@@ -22,9 +22,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.charts.closer_view import draw_closer_view
 from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, CurveNumbers, Family, drawn_once
-from frictionlab.charts.end_labels import CurveEnd, draw_end_labels, ends_fit
 from frictionlab.charts.looks import (
     LEGEND_MARKS,
     WITHOUT_NUMBER,
@@ -33,11 +31,21 @@ from frictionlab.charts.looks import (
     status_entries,
     told_of,
 )
-from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
+from frictionlab.charts.marks import (
+    CurveEnd,
+    OnsetMark,
+    draw_closer_view,
+    draw_end_labels,
+    draw_onsets,
+    draw_speed_marks,
+    ends_fit,
+    onset_entries,
+    onsets_on,
+)
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, scale_alike, write_heading
 from frictionlab.charts.sweeps import SweptValue, headings, is_logarithmic
-from frictionlab.columns import unit_shown, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
+from frictionlab.values.columns import unit_shown, word
 
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
 KEPT_LEVEL = 1e-6  # of mean friction beyond V_lin: what differs by less is level

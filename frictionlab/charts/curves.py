@@ -11,15 +11,8 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.charts.sweeps import (
-    Sweep,
-    SweptValue,
-    linked_with,
-    linked_words,
-    sweep_of,
-    swept_columns,
-)
-from frictionlab.columns import (
+from frictionlab.charts.sweeps import Sweep, SweptValue, linked_with, linked_words, sweep_of, swept_columns
+from frictionlab.values.columns import (
     BELT_SPEED,
     SCALED,
     belt_speed,

@@ -18,18 +18,16 @@ from matplotlib.figure import Figure
 from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import LEAST_VISIBLE, Family, family_of
-from frictionlab.charts.derived import differences, normalized, reference_law
+from frictionlab.charts.derived import differences, normalized, reference_law, v_lin_of
 from frictionlab.charts.kept_figures import harmonic_figures, orbit_figures
 from frictionlab.charts.maps import MapFigure, map_of, map_of_curves
 from frictionlab.charts.shape_figure import ShapeFigure
-from frictionlab.charts.sheet import Heading
-from frictionlab.charts.style import STYLE, write_figure
-from frictionlab.charts.v_lin import v_lin_of
-from frictionlab.columns import SI, by_plain_names, plain_word, symbol, word
-from frictionlab.printable import printable
-from frictionlab.study import Study
+from frictionlab.charts.sheet import STYLE, Heading, write_figure
 from frictionlab.study.figure_options import FIGURE_NAMES, FORMATS, USUAL_FIGURES, FigureOptions
-from frictionlab.units.shown import ShownUnit, as_shown
+from frictionlab.study.study import Study
+from frictionlab.values.columns import SI, by_plain_names, plain_word, symbol, word
+from frictionlab.values.printable import printable
+from frictionlab.values.units import ShownUnit, as_shown
 
 FIGURES = {
     "mean_friction": ["mean_friction"],

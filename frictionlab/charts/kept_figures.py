@@ -2,6 +2,8 @@
 
 Of many points some are drawn, spread over the axis: every picture is one point, with a line for each law. Amplitudes
 of harmonics lie along a sweep, a picture for each harmonic.
+
+Friction that jumps where slip reverses: the instant between two samples, so that the jump is drawn upright.
 """
 
 from __future__ import annotations
@@ -20,11 +22,11 @@ from matplotlib.lines import Line2D
 
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import MOST_PICTURES, CurveData, CurveNumbers, Family, family_by
-from frictionlab.charts.jumps import with_jumps
 from frictionlab.charts.looks import Looks, curve_entries
 from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike, write_heading
 from frictionlab.charts.sweeps import SweptValue, headings, some_of, sweep_of
-from frictionlab.columns import (
+from frictionlab.study.figure_options import FigureOptions
+from frictionlab.values.columns import (
     ALSO_IN_SI,
     BELT_SPEEDS,
     belt_speed,
@@ -33,8 +35,47 @@ from frictionlab.columns import (
     unit_shown,
     word,
 )
-from frictionlab.study.figure_options import FigureOptions
-from frictionlab.units.shown import ShownUnit, in_shown_units
+from frictionlab.values.units import ShownUnit, in_shown_units
+
+STEEPER = 4.0  # how much more than before and after it friction changes in a jump
+LEAST_SLIP = 1e-9  # of the largest slip: less is rest
+
+
+def with_jumps(samples: pd.DataFrame) -> pd.DataFrame:
+    """Samples in time, with two more at every instant at which friction without memory jumps, before and after it.
+
+    That is where slip reaches zero, as it went until then; friction at rest is that of the stick that follows.
+    """
+    if "slip" not in samples or ("memory_0" in samples and samples["memory_0"].notna().any()):
+        return samples
+    slip, friction = (samples[name].to_numpy(dtype=float) for name in ("slip", "friction"))
+    slip = np.where(np.abs(slip) > LEAST_SLIP * np.abs(slip).max(), slip, 0.0)
+    pieces, done = [], 0
+    for at in np.flatnonzero((slip[:-1] != 0.0) & (slip[:-1] * slip[1:] <= 0.0)).tolist():
+        share = _reaches_zero(slip, at)
+        end = friction[at + 1]
+        sticks = at + 2 < len(slip) and slip[at + 1] == slip[at + 2] == 0.0
+        if sticks:
+            end -= (1.0 - share) * (friction[at + 2] - end)
+        around = [abs(friction[at] - friction[at - 1])] if at else [0.0]
+        if not sticks and at + 2 < len(slip):
+            around.append(abs(friction[at + 2] - end))
+        if abs(end - friction[at]) > STEEPER * max(around):
+            between = samples.iloc[[at]] + share * (samples.iloc[at + 1] - samples.iloc[at])
+            pieces += [
+                samples.iloc[done : at + 1],
+                *(between.assign(friction=f) for f in (friction[at], end)),
+            ]
+            done = at + 1
+    return pd.concat([*pieces, samples.iloc[done:]], ignore_index=True)
+
+
+def _reaches_zero(slip: np.ndarray, at: int) -> float:
+    """The share of the step after a sample at which slip does, as it went before, else as it is after."""
+    slope = slip[at] - slip[at - 1] if at else 0.0
+    share = -slip[at] / slope if slope else -1.0
+    return float(share if 0.0 < share < 1.0 else slip[at] / (slip[at] - slip[at + 1]))
+
 
 MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
 MOST_IN_TIME = 4  # points with a picture of velocity and one of friction

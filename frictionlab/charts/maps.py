@@ -42,7 +42,7 @@ from frictionlab.charts.sweeps import (
     some_of,
     sweep_of,
 )
-from frictionlab.columns import BOUNDARIES, is_belt_speed, word
+from frictionlab.values.columns import BOUNDARIES, is_belt_speed, word
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
 MOST_SEPARATE = 12  # values of a number beside belt speed that are lines; more are a map

@@ -13,10 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from frictionlab.charts.sheet import Heading, Sheet
-from frictionlab.charts.style import STYLE, write_figure
+from frictionlab.charts.sheet import STYLE, Heading, Sheet, write_figure
 from frictionlab.charts.sweeps import plain
-from frictionlab.printable import printable
+from frictionlab.values.printable import printable
 
 PLUS = " + "
 """Between the things of a set in the column ``without``."""

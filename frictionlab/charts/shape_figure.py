@@ -15,8 +15,8 @@ from frictionlab.charts.curves import CurveData, Family, drawn_once
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, part_told
 from frictionlab.charts.sweeps import BESIDE, headings, shortened, some_of
-from frictionlab.columns import CURVES, is_belt_speed, word
-from frictionlab.printable import with_error
+from frictionlab.values.columns import CURVES, is_belt_speed, word
+from frictionlab.values.printable import with_error
 
 MOST_SHAPES = 12
 SHADE = "0.5"

@@ -10,7 +10,16 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import SHOWN_IN_PART, belt_speed, given, leading, quantity, symbol, unit_shown, word
+from frictionlab.values.columns import (
+    SHOWN_IN_PART,
+    belt_speed,
+    given,
+    leading,
+    quantity,
+    symbol,
+    unit_shown,
+    word,
+)
 
 T = TypeVar("T")
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more

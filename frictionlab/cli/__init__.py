@@ -109,9 +109,9 @@ def _report(problem: BaseException) -> int:
 
 def _diagnose(problem: BaseException) -> tuple[int, str]:
     """The exit code and the message of an error: the study's, the disk's, a plugin's or our own."""
-    from frictionlab.faults import BrokenPlugin, failing_law
-    from frictionlab.runner.errors import FolderError, NoScheduler, SaveError
-    from frictionlab.study import StudyError
+    from frictionlab.laws.faults import BrokenPlugin, failing_law
+    from frictionlab.runner.files import FolderError, NoScheduler, SaveError
+    from frictionlab.values.notes import StudyError
 
     if isinstance(problem, CommandError):
         return problem.code, str(problem)

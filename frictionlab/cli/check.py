@@ -1,4 +1,7 @@
-"""``check``: what a study will take, before it is run."""
+"""``check``: what a study will take, before it is run.
+
+Studies with measurements, as ``run`` and ``check`` take them: solved where something was measured.
+"""
 
 from __future__ import annotations
 
@@ -11,15 +14,27 @@ from typing import TYPE_CHECKING
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.measured import at_measured
-from frictionlab.cli.output import metered, print_doubts, print_records, print_result
-from frictionlab.columns import BELT_SPEEDS
+from frictionlab.cli.output import WRONG, CommandError, metered, print_doubts, print_records, print_result
+from frictionlab.values.columns import BELT_SPEEDS
 
 if TYPE_CHECKING:
-    from frictionlab.runner.plan import Planned
+    from frictionlab.runner.batch import Job, Planned
     from frictionlab.runner.price import Price
-    from frictionlab.study import Plugins
-    from frictionlab.units.shown import ShownUnit
+    from frictionlab.study.law_files import Plugins
+    from frictionlab.values.units import ShownUnit
+
+
+def at_measured(jobs: list[Job]) -> list[Job]:
+    """The jobs, those with measurements at their points. Raises CommandError."""
+    if all(job.study.data is None for job in jobs):
+        return jobs
+    from frictionlab.analysis.fit.api import at_measured_points
+    from frictionlab.analysis.fit.measured import WrongData
+
+    try:
+        return [job._replace(study=at_measured_points(job.study)) for job in jobs]
+    except WrongData as problem:
+        raise CommandError(WRONG, str(problem)) from None
 
 
 @click.command("check")
@@ -37,8 +52,8 @@ def check_command(
     Python code, which is run to check it, unless --no-plugins is given.
     """
     from frictionlab.runner import batch
+    from frictionlab.runner.batch import plan
     from frictionlab.runner.chunks import task_of
-    from frictionlab.runner.plan import plan
     from frictionlab.runner.price import MOST, prices
 
     jobs = at_measured(batch.jobs(study, None, overrides, law_files, plugins))

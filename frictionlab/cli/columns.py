@@ -17,7 +17,7 @@ WIDEST_LINE = 110
 @options.as_json
 def columns_command(as_json: bool) -> None:
     """List the result columns by the groups that a study's columns, or --columns, may name."""
-    from frictionlab.columns import COLUMNS, DEFAULT
+    from frictionlab.values.columns import COLUMNS, DEFAULT
 
     if as_json:
         print_records(
@@ -37,8 +37,8 @@ def columns_command(as_json: bool) -> None:
 
 def _lines() -> list[str]:
     """A heading a group, a line a column; * before the default ones."""
-    from frictionlab.columns import ALWAYS, COLUMNS, DEFAULT, GROUPS, columns_of
     from frictionlab.methods.words import ModelWord
+    from frictionlab.values.columns import ALWAYS, COLUMNS, DEFAULT, GROUPS, columns_of
 
     lines = [
         "* found where no columns are asked for, and left out where no row has them",

@@ -24,7 +24,7 @@ def explore_command(run: Path | None, file: Path) -> None:
 
     RUN, a folder that ``run`` wrote, puts its table on the page, too: sliders over what it swept, every law.
     """
-    from frictionlab.explore import write_explorer
+    from frictionlab.report.explorer import write_explorer
     from frictionlab.runner.saved import read_saved
 
     saved = None if run is None else read_saved(run)

@@ -20,8 +20,8 @@ from frictionlab.cli.output import (
 )
 
 if TYPE_CHECKING:
-    from frictionlab.fitting.result import FittedLaws
-    from frictionlab.study import Plugins
+    from frictionlab.analysis.fit.result import FittedLaws
+    from frictionlab.study.law_files import Plugins
 
 
 @click.command("fit")
@@ -45,11 +45,10 @@ def fit_command(
     foretells blocks left out, residuals.csv what is left. A figure and a page stand beside. An interrupt keeps the
     laws that are fitted.
     """
-    from frictionlab.fitting.api import fit_measured
-    from frictionlab.fitting.files import measured_of
-    from frictionlab.fitting.measured import WrongData
-    from frictionlab.results.table import records
-    from frictionlab.study import load_study
+    from frictionlab.analysis.fit.api import fit_measured, measured_of
+    from frictionlab.analysis.fit.measured import WrongData
+    from frictionlab.runner.table import records
+    from frictionlab.study.load import load_study
 
     asked = load_study(study, overrides, law_files, plugins)
     if asked.data is None or not asked.free:
@@ -77,8 +76,7 @@ def fit_command(
 
 def _write(found: FittedLaws, title: str, folder: Path) -> None:
     """Tables, figure and page. Raises SaveError."""
-    from frictionlab.runner.errors import SaveError
-    from frictionlab.runner.files import write_whole
+    from frictionlab.runner.files import SaveError, write_whole
 
     for name, table in (("fit", found.table), ("fit_laws", found.laws), ("residuals", found.residuals)):
         write_whole(folder / f"{name}.csv", table.to_csv(None, index=False, lineterminator="\n").encode())

@@ -12,9 +12,9 @@ from frictionlab.cli import options
 from frictionlab.cli.output import BROKEN_PLUGIN, FAILED, OK, print_message, print_records, print_result
 
 if TYPE_CHECKING:
-    from frictionlab.registry import Laws
+    from frictionlab.study.registry import Laws
     from frictionlab.testing import Report
-    from frictionlab.testing.outcome import Outcome
+    from frictionlab.testing.running import Outcome
 
 
 @click.command("laws")
@@ -34,7 +34,7 @@ def laws_command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: A
     With test and no NAME, the laws of --law, else every installed law. Broken laws are told on stderr, and the exit
     code is then 4; it is 3 where a check fails that was not expected to.
     """
-    from frictionlab.study import laws_of_files
+    from frictionlab.study.law_files import laws_of_files
 
     known = laws_of_files(law_files)
     testing = names[:1] == ("test",)
@@ -48,7 +48,7 @@ def laws_command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: A
 
 
 def _list(asked: tuple[str, ...], known: Laws, as_json: bool) -> int:
-    from frictionlab.registry.records import details, law_record, one_line_each
+    from frictionlab.study.records import details, law_record, one_line_each
 
     aliases = known.aliases()
     records = [law_record(each, known.named(each), aliases.get(each, ())) for each in asked or aliases]
@@ -77,7 +77,7 @@ class TestOptions(NamedTuple):
 
 def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
     """The laws of the files given, else every law, broken ones too; one of two names of the same law."""
-    from frictionlab import registry
+    from frictionlab.study import registry
 
     others = {name for own in known.aliases().values() for name in own}
     names = [name for name in known.names() if not law_files or name not in registry.law_names()]
@@ -86,7 +86,7 @@ def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
 
 def _test(names: Sequence[str], known: Laws, given: TestOptions) -> int:
     """Put laws through the battery, one after the other; the table grows as checks end."""
-    from frictionlab.registry import BrokenPlugin
+    from frictionlab.study.registry import BrokenPlugin
 
     reports: dict[str, Report] = {}
     for name in names:

@@ -14,8 +14,8 @@ from frictionlab.cli.output import FAILED, OK, print_message, print_records, pri
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from frictionlab.least_model.result import Needs
-    from frictionlab.study import Plugins
+    from frictionlab.analysis.needs.needs import Needs
+    from frictionlab.study.law_files import Plugins
 
 
 @click.command("needs")
@@ -49,9 +49,9 @@ def needs_command(
     """
     import pandas as pd
 
-    from frictionlab.least_model.needs import needs_of_study
-    from frictionlab.results.table import records
-    from frictionlab.study import load_study
+    from frictionlab.analysis.needs.needs import needs_of_study
+    from frictionlab.runner.table import records
+    from frictionlab.study.load import load_study
 
     asked = load_study(study, overrides, law_files, plugins)
     if out is not None:
@@ -68,7 +68,7 @@ def needs_command(
 
 def _lines(found: Sequence[Needs]) -> list[str]:
     """What holds for every curve, but for its numbers, then what is left of each below what tells it apart."""
-    from frictionlab.results.summary import alike
+    from frictionlab.runner.summary import alike
 
     if len(found) == 1:
         return found[0].sentences
@@ -85,7 +85,7 @@ def _lines(found: Sequence[Needs]) -> list[str]:
 
 def _form(line: str) -> tuple[str, str]:
     """A sentence with what it is about, and the rest of it without its numbers."""
-    from frictionlab.results.summary import pattern
+    from frictionlab.runner.summary import pattern
 
     what, _, rest = line.partition(":")
     return what, pattern(rest)
@@ -94,8 +94,7 @@ def _form(line: str) -> tuple[str, str]:
 def _write(table: DataFrame, title: str, out: Path) -> None:
     """The table and its figure into a folder. Raises SaveError."""
     from frictionlab.charts.needs import draw_needs  # with matplotlib, which takes a second
-    from frictionlab.runner.errors import SaveError
-    from frictionlab.runner.files import write_whole
+    from frictionlab.runner.files import SaveError, write_whole
 
     write_whole(out / "needs.csv", table.to_csv(None, index=False, lineterminator="\n").encode())
     try:

@@ -25,7 +25,7 @@ def study(path: Path, template: str | None) -> None:
 
     Beside it frictionlab.schema.json is written: by it editors complete and check the study as you type.
     """
-    from frictionlab.scaffold.study import SCHEMA_FILE, TEMPLATE, new_study, put_schema_beside
+    from frictionlab.cli.scaffold import SCHEMA_FILE, TEMPLATE, new_study, put_schema_beside
     from frictionlab.study.schema import schema_text
 
     file = new_study(path, TEMPLATE.with_name(template or TEMPLATE.name))
@@ -42,7 +42,7 @@ def study(path: Path, template: str | None) -> None:
 @click.argument("path", type=options.PATH)
 def bench(path: Path) -> None:
     """Write a commented list of what to measure to the file PATH, which ``bench`` takes. Never replaces a file."""
-    from frictionlab.scaffold.study import TEMPLATE, new_study
+    from frictionlab.cli.scaffold import TEMPLATE, new_study
 
     file = new_study(path, TEMPLATE.with_name("bench.yaml"))
     print_result(str(file))
@@ -60,7 +60,7 @@ def bench(path: Path) -> None:
 )
 def law(path: Path, memory: Literal["none", "bristle"]) -> None:
     """Write the folder NAME: a law that installs, with its test and a study. Never replaces anything."""
-    from frictionlab.scaffold.law import BadName, new_law
+    from frictionlab.cli.scaffold import BadName, new_law
 
     try:
         folder = new_law(path, memory)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from frictionlab.registry import Laws
+    from frictionlab.study.registry import Laws
 
 
 class _Place(click.Path):
@@ -65,7 +65,7 @@ def check_laws(names: Iterable[str], known: Laws) -> None:
 
 def make_folder(out: Path) -> None:
     """Make the folder, before anything is computed. Raises FolderError."""
-    from frictionlab.runner.errors import FolderError
+    from frictionlab.runner.files import FolderError
 
     try:
         out.mkdir(parents=True, exist_ok=True)

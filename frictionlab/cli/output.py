@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
-from frictionlab.printable import printable
+from frictionlab.values.printable import printable
 
 if TYPE_CHECKING:
     from frictionlab.runner.progress import Meter
-    from frictionlab.study import Study
+    from frictionlab.study.study import Study
 
 STDOUT, STDERR = 1, 2
 """File descriptors."""
@@ -152,7 +152,7 @@ def print_message(message: str) -> None:
 
 def print_doubts(study: Study) -> None:
     """What of a study may be a slip, on stderr."""
-    from frictionlab.runner.doubts import doubts
+    from frictionlab.runner.batch import doubts
 
     for sentence in doubts(study):
         print_message(sentence)

@@ -1,14 +1,42 @@
-"""``report``: the report of a finished run."""
+"""``report``: the report of a finished run.
+
+The figures of a run, drawn by ``run``, ``plot`` and ``report``.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.figures import draw_into, figure_data
 from frictionlab.cli.output import metered, print_message, print_result
+
+if TYPE_CHECKING:
+    from frictionlab.charts.figures import FigureData
+    from frictionlab.runner.progress import Meter
+    from frictionlab.runner.saved import Saved
+
+
+def draw_into(folder: Path, data: FigureData, meter: Meter) -> list[Path]:
+    """Draw the figures of a run into its folder, onsets marked; the files. Raises SaveError."""
+    from frictionlab.charts.figures import draw_figures  # with matplotlib, which takes a second
+    from frictionlab.runner.files import SaveError
+
+    try:
+        return draw_figures(data, folder / "figures", meter)
+    except OSError as problem:
+        raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem
+
+
+def figure_data(saved: Saved) -> FigureData:
+    """What the figures of a saved run are drawn of; of a long table, whose rows are not all there, no orbits."""
+    from frictionlab.charts.figures import FigureData, Kept
+
+    kept = Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)
+    tables = {name: getattr(saved, name) for name in ("onsets", "curves", "attractors", "boundaries")}
+    return FigureData.of(saved.study, saved.table, saved.title, kept=kept, **tables)
 
 
 @click.command("report")
@@ -24,7 +52,7 @@ def report_command(run: Path, figures: bool) -> None:
 
 def drawn_anew(run: Path, figures: bool) -> None:
     """The figures of a run, and its report unless they alone are asked for."""
-    from frictionlab.runner.in_use import alone_in
+    from frictionlab.runner.files import alone_in
     from frictionlab.runner.saved import read_saved
 
     with alone_in(run, make=False):
@@ -36,7 +64,7 @@ def drawn_anew(run: Path, figures: bool) -> None:
             meter.begins("drawing", "figures")
             files = draw_into(run, data, meter)
         if not figures:
-            from frictionlab.report import write_report
+            from frictionlab.report.page import write_report
 
             files = [write_report(saved, data)]
     if files:

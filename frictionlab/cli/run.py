@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.figures import draw_into, figure_data
-from frictionlab.cli.measured import at_measured
+from frictionlab.cli.check import at_measured
 from frictionlab.cli.output import (
     BROKEN_PLUGIN,
     FAILED,
@@ -26,18 +25,19 @@ from frictionlab.cli.output import (
     print_records,
     print_result,
 )
-from frictionlab.columns import ONSETS_GROUP
+from frictionlab.cli.report import draw_into, figure_data
+from frictionlab.values.columns import ONSETS_GROUP
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from frictionlab.charts.figures import FigureData
-    from frictionlab.results.run import Run
     from frictionlab.runner.batch import Job
     from frictionlab.runner.progress import Meter
+    from frictionlab.runner.run import Run
     from frictionlab.runner.saved import Saved
     from frictionlab.runner.workforce import Workforce
-    from frictionlab.study import Plugins
+    from frictionlab.study.law_files import Plugins
 
 
 def _one_of_so_many(
@@ -149,7 +149,7 @@ def run_command(**given: Any) -> int:
     # This process is the command's own: pages that arrow frees go back at once, a quarter of a long run's memory.
     os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
     from frictionlab.runner import batch  # with pandas
-    from frictionlab.runner.in_use import alone_in
+    from frictionlab.runner.files import alone_in
 
     asked = RunOptions(**given)
     asked.check()
@@ -254,7 +254,7 @@ def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
 def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
     """Solve a share of the chunks of a study and keep them; the table is for the run that gathers them."""
     from frictionlab.runner.kept_chunks import kept_beside
-    from frictionlab.runner.share import run_share
+    from frictionlab.runner.solving import run_share
 
     kept = kept_beside(job.out, asked.cache, asked.cache_size)
     assert kept is not None
@@ -274,14 +274,14 @@ def _how_far(result: Run) -> str:
 
 
 def _show(result: Run) -> None:
-    from frictionlab.results.summary import summary
+    from frictionlab.runner.summary import summary
 
     print_result(summary(result))
 
 
 def _show_failed(result: Run) -> None:
     """The expectations that failed, on stderr: stdout belongs to the records."""
-    from frictionlab.results.summary import failed_lines
+    from frictionlab.runner.summary import failed_lines
 
     for line in failed_lines(result.verdicts):
         print_message(line)
@@ -289,7 +289,7 @@ def _show_failed(result: Run) -> None:
 
 def _draw(saved: Saved, every: Run | None, meter: Meter) -> FigureData:
     """Draw the figures of a run, every point of it where that is given; what they are drawn of but for that."""
-    from frictionlab.results.table import whole
+    from frictionlab.runner.table import whole
 
     data = figure_data(saved)
     if draw_into(saved.folder, data if every is None else replace(data, table=whole(every.table)), meter):
@@ -298,20 +298,20 @@ def _draw(saved: Saved, every: Run | None, meter: Meter) -> FigureData:
 
 
 def _report(saved: Saved, drawn: FigureData) -> None:
-    from frictionlab.report import write_report
+    from frictionlab.report.page import write_report
 
     print_message(f"report in {write_report(saved, drawn)}")
 
 
 def _write_index(folder: Path, done: Sequence[Run]) -> None:
-    from frictionlab.report import write_index
+    from frictionlab.report.page import write_index
     from frictionlab.runner.saved import saved_as
 
     print_message(f"index in {write_index(folder, [saved_as(result) for result in done])}")
 
 
 def _cite(done: Sequence[Run]) -> None:
-    from frictionlab.report import bibtex
+    from frictionlab.report.sources import bibtex
     from frictionlab.runner.saved import saved_as
 
     print_result(bibtex([saved_as(result) for result in done]))
@@ -319,14 +319,14 @@ def _cite(done: Sequence[Run]) -> None:
 
 def _rows(job: Job, result: Run, asked: RunOptions) -> list[dict[str, Any]]:
     """The records of a run; of a folder of studies, each names its study."""
-    from frictionlab.results.table import records
+    from frictionlab.runner.table import records
 
     whose = {"study": job.name} if asked.study.is_dir() else {}
     return [whose | record for record in records(result.table)]
 
 
 def _exit_code(result: Run) -> int:
-    from frictionlab.faults import MARK
+    from frictionlab.laws.faults import MARK
 
     if result.to_show["reason"].astype("str").str.startswith(MARK).any():
         return BROKEN_PLUGIN

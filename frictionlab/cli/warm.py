@@ -20,7 +20,7 @@ def warm_command(names: tuple[str, ...], law_files: tuple[Path, ...]) -> None:
     compiling them. It compiles for method auto; of other methods a run compiles what it needs.
     """
     from frictionlab.runner.warm import warm
-    from frictionlab.study import laws_of_files
+    from frictionlab.study.law_files import laws_of_files
 
     known = laws_of_files(law_files)
     options.check_laws(names, known)

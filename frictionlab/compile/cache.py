@@ -2,11 +2,19 @@
 
 numba's own cache misses an edit in another file, so an entry is named by every piece of code and every constant the
 kernel and the law can reach.
+
+No search for garbage while numba compiles: its trees outlive every search, which took an eighth of the time.
+
+Users of arrays are counted in records that hold arrays alone.
+
+numba looks for arrays in every number of every record each time that one is given a name or let go: of a record of
+thirty numbers that is half of the text it hands to LLVM, which then drops it.
 """
 
 from __future__ import annotations
 
 import contextlib
+import gc
 import hashlib
 import inspect
 import itertools
@@ -22,21 +30,77 @@ from typing import Any, NamedTuple
 
 import llvmlite
 import numba
+import numba.core.event
+import numba.core.runtime.context
 import numba.core.typing.templates
 import numba.extending
 import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
-from frictionlab.compile.code import FOREIGN, names_used
-from frictionlab.compile.collection import pause_collection
-from frictionlab.compile.counting import count_in_arrays_alone
-from frictionlab.compile.decorators import inner, njit
-from frictionlab.compile.dispatch import KnownLaw, law_of_numbers
+from frictionlab.compile.decorators import FOREIGN, inner, names_used, njit
+from frictionlab.compile.dispatch import KernelLaw, KnownLaw, by_itself, law_of_numbers
 from frictionlab.compile.kept import KeptEntry
-from frictionlab.compile.kernel_law import KernelLaw, by_itself
-from frictionlab.faults import cannot_compile
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.faults import cannot_compile
+
+_event: Any = numba.core.event
+
+
+class _PausesCollection(_event.Listener):  # type: ignore[misc]  # numba has no types
+    """Switches the collector off where the outermost function begins to compile, and on again where it ends.
+
+    One kernel is compiled at a time: numba holds a lock from before the first of these calls to after the last.
+    """
+
+    depth = 0
+    was_on = False
+
+    def on_start(self, event: Any) -> None:
+        """Called for every function, before it is compiled."""
+        if self.depth == 0:
+            self.was_on = gc.isenabled()
+            gc.disable()
+        self.depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """Called for every function, whether it was compiled or could not be."""
+        self.depth -= 1
+        if self.depth == 0 and self.was_on:
+            gc.enable()
+
+
+def pause_collection() -> None:
+    """From now on."""
+    _event.register("numba:compile", _PausesCollection())
+
+
+_Context: Any = numba.core.runtime.context.NRTContext  # internals of numba, untyped
+_holds: dict[Any, bool] = {}
+"""Of numba's types of values: whether there is an array inside."""
+
+
+def _arrays_in(context: Any, builder: Any, kind: Any, value: Any) -> list[Any]:
+    """The type and the address of what counts the users of each array inside a value."""
+    models = context._context.data_model_manager
+    model = models[kind]
+    found = [(kind, model.get_nrt_meminfo(builder, value))] if model.has_nrt_meminfo() else []
+    for inside, part in model.traverse(builder) if _hold_arrays(models, kind) else ():
+        if _hold_arrays(models, inside):
+            found += _arrays_in(context, builder, inside, part(value))
+    return found
+
+
+def _hold_arrays(models: Any, kind: Any) -> bool:
+    if kind not in _holds:
+        _holds[kind] = models[kind].contains_nrt_meminfo()
+    return _holds[kind]
+
+
+def count_in_arrays_alone() -> None:
+    """From now on."""
+    _Context.get_meminfos = _arrays_in
+
 
 # numba links compiled functions by name and types, and tells those of one name apart by a number that every process
 # counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
@@ -166,7 +230,7 @@ def _module(name: str, source: str, **given: Any) -> ModuleType:
     return module
 
 
-HOST_ONLY = {"call.py", "collection.py", "interpret.py", "kept.py", "notice.py"}
+HOST_ONLY = {"call.py", "interpret.py", "kept.py", "notice.py"}
 """Files of this folder that decide where machine code is kept and how soon it is there, and nothing in it."""
 # Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
 # numbers named by the old ones, and no other process could load it.
@@ -186,7 +250,7 @@ def _fingerprint(*roots: Any) -> str:
     return digest.hexdigest()[:24]
 
 
-_OF_RECORDS = "frictionlab.quantities"
+_OF_RECORDS = "frictionlab.values.quantities"
 """Home of what laws share with all records: it checks what they are given, and no kernel calls it."""
 
 

@@ -17,8 +17,8 @@ from frictionlab.compile.cache import Compiled, compiled
 from frictionlab.compile.interpret import TooLong, interpreted, limited_to
 from frictionlab.compile.law_addresses import by_address, without_addresses
 from frictionlab.compile.notice import add_to_compiling, named_while_it_compiles
-from frictionlab.faults import from_outside
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.faults import from_outside
 
 _config: Any = numba.config
 

@@ -2,6 +2,8 @@
 
 A kernel takes a law as its first argument and calls its methods, ``law.sliding_vector(v)``. Interpreted, that is
 the law itself. A kernel with several bodies is chosen here too, by dimension or by the kind of law.
+
+A law as machine code sees it: a record of its numbers, and a class whose methods they lead to.
 """
 
 from __future__ import annotations
@@ -27,11 +29,25 @@ from frictionlab.compile.addresses import (
     Interface,
     call_on_line_or_plane,
 )
-from frictionlab.compile.code import names_used
-from frictionlab.compile.decorators import INNER, fast
+from frictionlab.compile.decorators import INNER, fast, names_used
 from frictionlab.compile.lanes import LaneType
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
+
+
+class KernelLaw(NamedTuple):
+    """A law, the class of its methods and their structure, its numbers; held: what the addresses among them need."""
+
+    law: FrictionLaw
+    kind: KnownLaw
+    numbers: dict[str, Any]
+    held: tuple[Any, ...] = ()
+
+
+def by_itself(law: FrictionLaw) -> KernelLaw:
+    """The law with its own methods: a kernel is compiled for it alone."""
+    return KernelLaw(law, KnownLaw(type(law), law.structure()), dict(law.numbers()))
+
 
 _extending: Any = numba.extending  # its published types lag behind what it accepts
 _templates: Any = numba.core.typing.templates

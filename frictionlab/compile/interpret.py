@@ -16,7 +16,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from frictionlab.compile.code import FOREIGN, names_used
+from frictionlab.compile.decorators import FOREIGN, names_used
 
 _config: Any = numba.config
 

@@ -1,10 +1,13 @@
 """Numbers in lanes taken from arrays and put into them; one of two select in every lane; functions lane by lane.
 
 Where Python runs a kernel, lanes are numpy arrays of any length, and one number is an array of none.
+
+The friction of a law without memory at several speeds of slip at once.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import llvmlite.ir
@@ -13,7 +16,8 @@ import numba.extending
 import numba.np.arrayobj
 import numpy as np
 
-from frictionlab.compile.interpret import run_as, run_on_arrays_as
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.interpret import interpreted_on_arrays, run_as, run_on_arrays_as
 from frictionlab.compile.lanes import (
     LANE_COUNT,
     LANES,
@@ -25,6 +29,7 @@ from frictionlab.compile.lanes import (
     put_together,
     taken_apart,
 )
+from frictionlab.laws.base import FrictionLaw
 
 _ir: Any = llvmlite.ir
 _types: Any = numba.core.types  # internals of numba, untyped
@@ -252,3 +257,44 @@ summed = _made(_sum_up, _sum_in_python, _sum_in_python)
 """summed(number): the sum of all lanes; one number as it is."""
 room_for = _made(_room_for, _room_in_python)
 """room_for(count): how many lanes so many numbers are put into at once."""
+
+
+PROBES = 1e-12, 1e-3, 0.3, 1.0, 10.0, 3e3
+"""Speeds at which the text of a law on an array is held against the law."""
+
+
+def takes_lanes(law: FrictionLaw) -> bool:
+    """Whether friction is along the slip and a function of its speed alone."""
+    return law.memory_kind == "none" and type(law).sliding_vector is FrictionLaw.sliding_vector
+
+
+@inner
+def friction_by_lane(law: Any, speeds: Any) -> Any:
+    """The coefficient at each of these speeds; lane by lane, for laws branch on speed."""
+    found = speeds
+    for k in range(LANE_COUNT):
+        found = with_lane(found, k, law.sliding_friction(lane(speeds, k)))
+    return found
+
+
+def _friction_of_array(law: FrictionLaw, speeds: np.ndarray) -> Any:
+    text = interpreted_on_arrays(type(law).sliding_friction)
+    return text(law, speeds) if _serves(law) else _one_by_one(law, speeds)
+
+
+run_on_arrays_as(friction_by_lane, _friction_of_array)
+
+
+def _one_by_one(law: FrictionLaw, speeds: np.ndarray) -> np.ndarray:
+    return np.array([law.sliding_friction(speed) for speed in speeds.tolist()])
+
+
+@lru_cache(maxsize=64)
+def _serves(law: FrictionLaw) -> bool:
+    """Whether the text of the law means the same on an array."""
+    speeds = np.array(PROBES)
+    try:
+        found = interpreted_on_arrays(type(law).sliding_friction)(law, speeds)
+        return bool(np.allclose(found + 0.0 * speeds, _one_by_one(law, speeds), rtol=1e-13, atol=0.0))
+    except (TypeError, ValueError, ArithmeticError, AttributeError, LookupError):  # it takes one number alone
+        return False

@@ -16,8 +16,15 @@ import numpy as np
 from frictionlab.compile.addresses import Addressed, addresses_of, bytes_of, written_to
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
-from frictionlab.compile.dispatch import KERNEL_METHODS, KernelMethod, KnownLaw, compilable, law_of_numbers
-from frictionlab.compile.kernel_law import KernelLaw, by_itself
+from frictionlab.compile.dispatch import (
+    KERNEL_METHODS,
+    KernelLaw,
+    KernelMethod,
+    KnownLaw,
+    by_itself,
+    compilable,
+    law_of_numbers,
+)
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 

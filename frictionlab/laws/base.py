@@ -1,4 +1,8 @@
-"""The base classes of friction laws: a frozen record of parameters whose methods state the physics.
+"""Base classes of friction laws: a frozen record of parameters whose methods state the physics.
+
+The label of a law: the name of its rows in a table, beside its parameters and no part of its physics.
+
+Methods of a law that take one slip speed or, called in Python, an array of them.
 
 The same methods run interpreted (with the record itself as ``self``) and compiled (with a named tuple of its
 numbers as ``self``), and on the line (``float`` slip velocity) and in the plane (``complex``: x1 + i x2).
@@ -6,17 +10,18 @@ numbers as ``self``), and on the line (``float`` slip velocity) and in the plane
 
 from __future__ import annotations
 
+import inspect
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import Any, ClassVar, Literal, Self
+from collections.abc import Callable, Mapping
+from functools import partial
+from types import FunctionType, MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import model_validator
 
-from frictionlab.laws.arrays import accept_arrays
-from frictionlab.laws.labelled import Labelled
-from frictionlab.quantities import (
+from frictionlab.values.quantities import (
     Dimension,
     Finite,
     NonNegative,
@@ -26,7 +31,82 @@ from frictionlab.quantities import (
     Speed,
     dimensions,
 )
-from frictionlab.units.text import in_units_of_law, unit_of_dimension
+from frictionlab.values.units import in_units_of_law, unit_of_dimension
+
+_LABEL = "_label"
+"""Where a law holds it: no field and no private attribute of pydantic, so that equal laws are equal and every law is
+made as it was."""
+
+
+class Labelled(Record):
+    """A record that may have a ``label``, one line of text, beside its values. Raises ValueError for another."""
+
+    if TYPE_CHECKING:  # type checkers take the signature from the fields
+        label: str = ""
+    else:
+
+        def __init__(self, /, *without_names: Any, label: str = "", **values: Any) -> None:
+            super().__init__(*without_names, **values)
+            if not isinstance(label, str) or not label.isprintable() or (label and not label.strip()):
+                name = type(self).__name__
+                raise ValueError(f"{name}: label must be one line of visible text, got {label!r}")
+            vars(self)[_LABEL] = label
+
+        _own, _values = inspect.signature(Record.__init__).parameters.values()
+        _label_of = inspect.Parameter("label", inspect.Parameter.KEYWORD_ONLY, default="", annotation=str)
+        __init__.__signature__ = inspect.Signature([_own, _label_of, _values])
+        __init__.__pydantic_base_init__ = True  # as for Record
+        del _own, _label_of, _values
+
+        @property
+        def label(self) -> str:
+            """The name of its rows; '' where none was given: its registered name then."""
+            return vars(self).get(_LABEL, "")
+
+    def __repr_args__(self) -> Any:
+        """The values, and the label where there is one."""
+        yield from super().__repr_args__()
+        if self.label:
+            yield "label", self.label
+
+
+OF_SPEED = "sliding_friction", "sliding_vector"
+"""The methods whose one argument is a speed or a slip velocity."""
+
+
+class OfEach:
+    """A method of one number that its law, once made, also takes arrays for; a class has the method itself.
+
+    So compiled code, which asks the class, is what it was.
+    """
+
+    def __init__(self, method: FunctionType) -> None:
+        self.py_func = method
+
+    def __get__(self, law: Any, kind: type | None = None) -> Callable[..., Any]:
+        return self.py_func if law is None else partial(_of_each, self.py_func, law)
+
+
+def as_written(member: Any) -> Any:
+    """A method as its class defines it; anything else as it is."""
+    return member.py_func if isinstance(member, OfEach) else member
+
+
+def _of_each(method: FunctionType, law: Any, given: Any) -> Any:
+    if isinstance(given, int | float | complex) or np.ndim(given) == 0:
+        return method(law, given)
+    numbers = np.asarray(given)
+    found = [method(law, number) for number in numbers.ravel().tolist()]
+    return np.array(found, dtype=numbers.dtype if numbers.dtype.kind == "c" else float).reshape(numbers.shape)
+
+
+def accept_arrays(law: type) -> None:
+    """Let the methods of a speed that this class defines take arrays."""
+    for name in OF_SPEED:
+        method = vars(law).get(name)
+        if isinstance(method, FunctionType) and not getattr(method, "__isabstractmethod__", False):
+            setattr(law, name, OfEach(method))
+
 
 __all__ = [
     "Dimension",

@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from frictionlab.laws.base import Dimension, NonNegative, Positive
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.quantities import document
+from frictionlab.values.quantities import document
 
 Stiffness = Annotated[Positive, Dimension(length=-1)]
 document(

@@ -15,7 +15,7 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.relay_locus.method import RelayLocus
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.words import AUTO, ModelWord
-from frictionlab.orbit.record import Orbit
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())

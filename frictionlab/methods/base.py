@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from pydantic import field_validator
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.orbit.record import Orbit, Orbits
-from frictionlab.quantities import Floats, Record
+from frictionlab.motion.orbit.record import Orbit, Orbits
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats, Record
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
 PROVED, TESTED, NOT_UNIQUE = "proved", "tested", "no"

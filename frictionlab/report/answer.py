@@ -9,16 +9,15 @@ import pandas as pd
 from markupsafe import Markup, escape
 
 from frictionlab.charts.sweeps import sweep_of
-from frictionlab.printable import MOST_DIGITS, with_error
-from frictionlab.quantities import Floats
 from frictionlab.report.facts import Facts
 from frictionlab.report.findings import above_tolerance, place_of, with_remark
 from frictionlab.report.shapes import shape_sentence
 from frictionlab.report.tables import begun, listed, minus, named, settings, the
-from frictionlab.results.pairs import Difference, best_rows
-from frictionlab.results.ranking import NOBODY, Ranking, ranking_of
-from frictionlab.results.table import swept_inputs
-from frictionlab.results.words import counted
+from frictionlab.runner.pairs import NOBODY, Difference, Ranking, best_rows, ranking_of
+from frictionlab.runner.table import swept_inputs
+from frictionlab.runner.words import counted
+from frictionlab.values.printable import MOST_DIGITS, with_error
+from frictionlab.values.quantities import Floats
 
 MOST_STRETCHES = 4
 """Stretches of the axis that are told one by one; of more, how many points each has."""

@@ -10,10 +10,9 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from frictionlab.report.markup import symbol_html
-from frictionlab.report.tables import number
+from frictionlab.report.tables import number, symbol_html
 from frictionlab.scene.waveforms import SINE
-from frictionlab.study import Study
+from frictionlab.study.study import Study
 
 _MINUS = "\N{MINUS SIGN}"
 _BY_TABLE = "body.receptance"

@@ -11,13 +11,13 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.charts.figures import FigureData
-from frictionlab.columns import BELT_SPEED, belt_speed
 from frictionlab.report.sources import Cited, sources
 from frictionlab.report.tables import Cell, settings
-from frictionlab.results.pairs import Difference, method_pairs
-from frictionlab.results.table import swept_inputs
+from frictionlab.runner.pairs import Difference, method_pairs
 from frictionlab.runner.saved import Saved
-from frictionlab.units.shown import as_shown
+from frictionlab.runner.table import swept_inputs
+from frictionlab.values.columns import BELT_SPEED, belt_speed
+from frictionlab.values.units import as_shown
 
 
 class CurveRows(NamedTuple):

@@ -14,13 +14,12 @@ from pandas import DataFrame
 from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family
 from frictionlab.charts.figures import OTHER_FIGURES
-from frictionlab.columns import typeset
-from frictionlab.quantities import Written
 from frictionlab.report.facts import Facts
-from frictionlab.report.markup import html, symbol_html, unit_html, word_html
 from frictionlab.report.question import given_of, is_taken, values_listed
-from frictionlab.report.tables import joined_values, setting
-from frictionlab.results.words import counted
+from frictionlab.report.tables import html, joined_values, setting, symbol_html, unit_html, word_html
+from frictionlab.runner.words import counted
+from frictionlab.values.columns import typeset
+from frictionlab.values.quantities import Written
 
 LARGEST_SVG = 400_000
 """Bytes of a drawing above which the pixels of the same figure are put into the page, where they are fewer."""

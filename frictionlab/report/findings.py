@@ -8,16 +8,26 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from frictionlab.columns import IN_SI_UNITS, RESULTS, SI, by_plain_names
 from frictionlab.methods.words import model_in_sentences, why_unique_in_words
-from frictionlab.printable import MOST_DIGITS, with_error
 from frictionlab.report.facts import Facts, whose
-from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Cell, Grid, grid, joined_values, number, setting, settings, size
-from frictionlab.results.expectations import Verdict
-from frictionlab.results.pairs import Difference, law_pairs
-from frictionlab.results.summary import alike, each_once, mean_span, pattern, statuses
-from frictionlab.results.words import counted
+from frictionlab.report.tables import (
+    Cell,
+    Grid,
+    grid,
+    joined_values,
+    number,
+    setting,
+    settings,
+    size,
+    symbol_html,
+    unit_html,
+)
+from frictionlab.runner.expectations import Verdict
+from frictionlab.runner.pairs import Difference, law_pairs
+from frictionlab.runner.summary import alike, each_once, mean_span, pattern, statuses
+from frictionlab.runner.words import counted
+from frictionlab.values.columns import IN_SI_UNITS, RESULTS, SI, by_plain_names
+from frictionlab.values.printable import MOST_DIGITS, with_error
 
 FEW_ROWS = 4
 """A table of so few rows is shown whole."""

@@ -8,20 +8,18 @@ from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
-from frictionlab.columns import SHOWN_IN, symbol, typeset, without_shown_unit, word
-from frictionlab.quantities import Written
-from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.sources import law_text, method_text
-from frictionlab.report.tables import Cell, Grid, grid, number
-from frictionlab.results.words import in_words
+from frictionlab.report.tables import Cell, Grid, grid, html, number, symbol_html
+from frictionlab.runner.words import in_words
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
-from frictionlab.scene.springs_in_si import own_length
+from frictionlab.scene.units import own_length
 from frictionlab.scene.waveforms import SINE, as_fraction
-from frictionlab.study import GridValue, Study
-from frictionlab.study.axes import FRICTION
-from frictionlab.study.ranges import SpeedRange
-from frictionlab.units.shown import ShownUnit
+from frictionlab.study.axes import FRICTION, GridValue, SpeedRange
+from frictionlab.study.study import Study
+from frictionlab.values.columns import SHOWN_IN, symbol, typeset, without_shown_unit, word
+from frictionlab.values.quantities import Written
+from frictionlab.values.units import ShownUnit
 
 MOST_LISTED = 8
 """Values of a sweep that are listed one by one; of more, the ends and how many."""

@@ -8,13 +8,23 @@ from collections.abc import Sequence
 import pandas as pd
 from markupsafe import Markup
 
-from frictionlab.columns import ALSO_IN_SI
-from frictionlab.printable import with_error
 from frictionlab.report.facts import CurveRows, Facts, whose
-from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Cell, Grid, grid, listed, named, setting, size, the
-from frictionlab.results.summary import alike, pattern
-from frictionlab.results.words import counted
+from frictionlab.report.tables import (
+    Cell,
+    Grid,
+    grid,
+    listed,
+    named,
+    setting,
+    size,
+    symbol_html,
+    the,
+    unit_html,
+)
+from frictionlab.runner.summary import alike, pattern
+from frictionlab.runner.words import counted
+from frictionlab.values.columns import ALSO_IN_SI
+from frictionlab.values.printable import with_error
 
 MOST_CURVES_NAMED = 6
 """Curves that are named one by one; more are told by what parts their shapes best, else counted."""

@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from frictionlab import registry
-from frictionlab.registry.bibliography import Publication, publications, unpublished_source
 from frictionlab.runner.saved import Saved
-from frictionlab.study import LawChoice
+from frictionlab.study import registry
+from frictionlab.study.bibliography import Publication, publications, unpublished_source
+from frictionlab.study.parts import LawChoice
 
 
 def bibtex(runs: Sequence[Saved]) -> str:

@@ -15,13 +15,8 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from frictionlab import __version__
-from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.quantities import at_least_one
-from frictionlab.results.attractor_table import attractor_table
-from frictionlab.results.run import Run
-from frictionlab.results.table import without_empty
 from frictionlab.runner.arguments import (
     Existing,
     check_executor,
@@ -35,19 +30,24 @@ from frictionlab.runner.arguments import (
     given_tolerance,
 )
 from frictionlab.runner.chunks import Task
-from frictionlab.runner.code_digest import code_digest
+from frictionlab.runner.files import alone_in
 from frictionlab.runner.folder import ASKED, SOLVER, Identity, RunFolder
 from frictionlab.runner.gathering import whole_table
-from frictionlab.runner.in_use import alone_in
-from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, kept_beside
+from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, code_digest, kept_beside
+from frictionlab.runner.more_tables import attractor_table
 from frictionlab.runner.progress import ProgressAsked, progress_told, silent
+from frictionlab.runner.run import Run
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.study_run import Interrupted, RunWays, StudyRun, UnsavedError
+from frictionlab.runner.table import without_empty
 from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
-from frictionlab.study import MethodChoice, Study, StudyCurve
-from frictionlab.study.objects import kind_of
+from frictionlab.study.grid import StudyCurve
+from frictionlab.study.parts import MethodChoice
+from frictionlab.study.study import Study, kind_of
+from frictionlab.values.columns import selected
+from frictionlab.values.quantities import at_least_one
 
 __all__ = [
     "Interrupted",

@@ -13,15 +13,16 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictionlab import registry
-from frictionlab.columns import ALL, GROUPS, RESULTS, SI
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.mistakes.notes import closest, did_you_mean, python_text, unknown_name
-from frictionlab.quantities import Floats, rebuilt
 from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
-from frictionlab.study import Study, load_study, parse_study
+from frictionlab.study import registry
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.study.study import Study
+from frictionlab.values.columns import ALL, GROUPS, RESULTS, SI
+from frictionlab.values.notes import closest, did_you_mean, python_text, unknown_name
+from frictionlab.values.quantities import Floats, rebuilt
 
 Existing = Literal["reuse", "replace"]
 """What becomes of results that are in the folder of a run already."""

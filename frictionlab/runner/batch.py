@@ -1,17 +1,38 @@
-"""One study or a folder of them, read and checked as a whole before the first is run."""
+"""One study or a folder of them, read and checked as a whole before the first is run.
+
+The plan of a study: curves and points per law and method, refusals, models. Nothing is computed.
+
+Numbers of laws that are out of all proportion to a scene in SI units: a bare 1 is a metre, not a micrometre.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
 from frictionlab.runner.api import run_folder
 from frictionlab.runner.arguments import Existing
-from frictionlab.runner.errors import FolderError
+from frictionlab.runner.curve_loads import speeds_to_add
+from frictionlab.runner.files import FolderError, check_free
 from frictionlab.runner.folder import check_page
-from frictionlab.runner.in_use import check_free
-from frictionlab.study import Mistake, Plugins, Study, StudyError, load_study
+from frictionlab.scene.scenes import Scenes
+from frictionlab.scene.units import LENGTH, VELOCITY
+from frictionlab.study import registry
+from frictionlab.study.grid import StudyCurve
+from frictionlab.study.law_files import Plugins
+from frictionlab.study.load import load_study
+from frictionlab.study.study import Study
+from frictionlab.study.yaml_source import read_file
+from frictionlab.theory.linear import velocity_scale
+from frictionlab.values.notes import Mistake, Note, StudyError
+from frictionlab.values.quantities import Written, dimensions
+from frictionlab.values.units import handy_unit, quantity_in, unit_of_dimension
 
 
 class Job(NamedTuple):
@@ -84,3 +105,108 @@ def check_folders(found: Sequence[Job], existing: Existing, alone: bool = True) 
             problems.append(str(problem))
     if problems:
         raise FolderError("\n".join(problems))
+
+
+@dataclass(frozen=True)
+class Planned:
+    """The points of one law and one method.
+
+    about: belt speeds are chosen as the run goes, so that points are not known better.
+    shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
+    """
+
+    law: str
+    kind: str
+    method: str
+    curves: int
+    points: int
+    refused: dict[str, int]
+    models: dict[str, int]
+    about: bool
+    shapeless: int
+    add_belt_speeds: list[float]
+
+    def record(self) -> dict[str, Any]:
+        """As a record of plain values."""
+        return asdict(self)
+
+
+def plan(study: Study) -> list[Planned]:
+    """One entry per law and method, in the order of the study. Raises BrokenPlugin."""
+    groups: dict[tuple[str, str], list[StudyCurve]] = {}
+    for curve in study.foreseen().curves():
+        groups.setdefault(curve.labels, []).append(curve)
+    return [_planned(group, study) for group in groups.values()]
+
+
+def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
+    tolerance, about = study.tolerance, study.chosen_range is not None
+    first, refusals, models = curves[0], Counter[str](), Counter[str]()
+    for curve in curves:
+        method, law = curve.method.method, curve.law
+        reasons = method.refusals(curve.scenes, law)
+        refusals.update(reason for reason in reasons if reason is not None)
+        able = [place for place, reason in enumerate(reasons) if reason is None]
+        if able:
+            models[_model(method, curve.scenes.taken(able), law, tolerance)] += len(able)
+    given = (
+        [] if about else [(curve.scenes, curve.law) for curve in curves]
+    )  # chosen ones are not to be added to
+    shapeless, add_belt_speeds = speeds_to_add(given)
+    return Planned(
+        law=first.law_label,
+        kind=first.kind,
+        method=first.method.label,
+        curves=len(curves),
+        points=sum(len(curve.rows) for curve in curves),
+        refused=dict(refusals),
+        models=dict(models),
+        about=about,
+        shapeless=shapeless,
+        add_belt_speeds=add_belt_speeds,
+    )
+
+
+def _model(method: Method, scenes: Scenes, law: FrictionLaw, tolerance: float) -> str:
+    """The model that will compute the numbers, and why; the name of a method that makes no choice."""
+    auto: Any = registry.method_class("auto")
+    return str(auto.foreseen(method, scenes, law, tolerance)) if isinstance(method, auto) else method.name
+
+
+WHAT = {LENGTH: "the amplitude of the motion without friction", VELOCITY: "the fastest speed of the scene"}
+"""By dimension, what a number is measured by."""
+MOST = {LENGTH: 300.0, VELOCITY: 30.0}
+"""Of that, beyond which a number is doubted."""
+
+
+def doubts(study: Study) -> list[str]:
+    """A sentence on each, with its place in the file of the study."""
+    notes = list(_notes(study))
+    if not notes or study.path is None:
+        return [note.what for note in notes]
+    places = read_file(study.path).located(notes)
+    return [
+        f"{each.origin}:{each.place.line if each.place else 1}: {each.path}: {each.what}" for each in places
+    ]
+
+
+def _notes(study: Study) -> Iterator[Note]:
+    scene = study.scene
+    if scene.dimensional is None or scene.undriven:
+        return
+    swing, scales = velocity_scale(scene), scene.dimensional.scales
+    speeds = study.sweep.get("scene.dimensional.belt_speed_m_per_s", (scene.dimensional.belt_speed_m_per_s,))
+    fastest = max(swing * scales.velocity, *(abs(speed) for speed in speeds if isinstance(speed, float)))
+    sizes = {LENGTH: swing / scene.frequency * scales.length, VELOCITY: fastest}
+    for place, choice in enumerate(study.laws):
+        law, swept = choice.law(), study.swept_parameters(choice)
+        for name, dimension in dimensions(choice.law_class).items():
+            value, size = getattr(law, name), sizes.get(dimension, math.inf)
+            if name in swept or not isinstance(value, float) or isinstance(value, Written):
+                continue
+            if value > MOST.get(dimension, math.inf) * size:
+                unit = unit_of_dimension(dimension)
+                times, shown = float(f"{value / size:.1g}"), handy_unit(unit, size).text(float(f"{size:.2g}"))
+                taken = f"{value:g} {unit} is taken, {times:,.0f} times {WHAT[dimension]}, {shown}"
+                meant = f"give it with its unit, such as {quantity_in(unit).example}"
+                yield Note(("laws", place, name), f"{taken}; {meant}")

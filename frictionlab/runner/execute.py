@@ -1,16 +1,181 @@
-"""Chunks through an executor, results as they come, and what is kept when the run is cut short."""
+"""Chunks through an executor: threads that a program need not wait for, limits of time, results as they come.
+
+Threads that a program need not wait for: a kernel that runs on in one of them cannot be stopped from outside.
+
+Chunks under a limit of time: points that take longer alone are killed, and keep no other point from its answer.
+
+Chunks through an executor, results as they come, and what is kept when the run is cut short.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import suppress
+from contextvars import copy_context
+from dataclasses import replace
 from queue import Empty, SimpleQueue
+from threading import Event, Thread
 from time import monotonic
+from typing import Any, NamedTuple, TypeVar
 
-from frictionlab.faults import BrokenPlugin
-from frictionlab.runner.limit import Solved, solve_each
+from frictionlab.compile.notice import seconds_compiling
+from frictionlab.laws.faults import BrokenPlugin
+from frictionlab.methods.base import refused
+from frictionlab.methods.under_way import UnderWay, told_to
+from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.open_chunks import OpenChunk
+from frictionlab.runner.part import Part
+from frictionlab.runner.progress import compiling
+from frictionlab.runner.solve import solve, text_columns
+
+Found = TypeVar("Found")
+LOOK = 0.1
+"""Seconds between two looks at the time."""
+
+
+class OverLimit(Exception):
+    """Work that has taken longer than it may, and goes on in a thread of its own until it ends by itself."""
+
+
+def within(seconds: float, work: Callable[..., Found], *arguments: Any) -> Found:
+    """What the work returns or raises; compilation does not count. Raises OverLimit.
+
+    The thread that asks only waits, so that an interrupt reaches it at once.
+    """
+    outcome: list[tuple[Any, BaseException | None]] = []
+    done, spent, last = Event(), 0.0, time.monotonic()
+
+    def go() -> None:
+        try:
+            outcome.append((work(*arguments), None))
+        except BaseException as problem:
+            outcome.append((None, problem))
+        finally:
+            done.set()
+
+    Thread(target=copy_context().run, args=(go,), daemon=True).start()
+    while not done.wait(LOOK):
+        now = time.monotonic()
+        spent, last = spent + (0.0 if compiling() else now - last), now
+        if spent > seconds:
+            raise OverLimit
+    found, problem = outcome.pop()
+    if problem is not None:
+        raise problem
+    return found
+
+
+class Workers(Executor):
+    """So many threads."""
+
+    def __init__(self, count: int) -> None:
+        self._waiting: SimpleQueue[tuple[Future[Any], Callable[[], Any]] | None] = SimpleQueue()
+        self._threads = [Thread(target=self._work, daemon=True) for _ in range(count)]
+        for thread in self._threads:
+            thread.start()
+
+    def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
+        """The future of ``work(*given, **named)``."""
+        future: Future[Any] = Future()
+        self._waiting.put((future, lambda: work(*given, **named)))
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Let the threads end after what waits, or after what they are at."""
+        while cancel_futures:
+            try:
+                left = self._waiting.get_nowait()
+            except Empty:
+                break
+            if left is not None:
+                left[0].cancel()
+        for _ in self._threads:
+            self._waiting.put(None)
+        for thread in self._threads if wait else ():
+            thread.join()
+
+    def _work(self) -> None:
+        while (asked := self._waiting.get()) is not None:
+            future, work = asked
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                future.set_result(work())
+            except BaseException as problem:
+                future.set_exception(problem)
+
+
+TOGETHER = 10
+"""Points of a chunk for which it is allowed the time of one: most need a small part of theirs."""
+under_way: dict[int, UnderWay] = {}
+"""By the id of each chunk that this process is solving: how far that is."""
+
+
+class Solved(NamedTuple):
+    """The rows of a chunk, and the seconds they took, compiling left out."""
+
+    parts: list[Part]
+    seconds: float
+
+
+def solve_each(chunks: Sequence[Chunk]) -> list[Solved]:
+    """Answer every point of chunks of one task; where they take too long together, of each half of them apart.
+
+    Raises BrokenPlugin.
+    """
+    if len(chunks) == 1:
+        return [solve_within(chunks[0])]
+    try:
+        return within(sum(map(_seconds, chunks)), _each_timed, chunks)
+    except OverLimit:
+        half = len(chunks) // 2
+        return solve_each(chunks[:half]) + solve_each(chunks[half:])
+
+
+def _each_timed(chunks: Sequence[Chunk]) -> list[Solved]:
+    return [solve_timed(chunk) for chunk in chunks]
+
+
+def solve_within(chunk: Chunk) -> Solved:
+    """Answer every point of a chunk; what takes too long is halved, down to the single points that do.
+
+    Raises BrokenPlugin.
+    """
+    size = len(chunk.rows)
+    try:
+        return within(_seconds(chunk), solve_timed, chunk)
+    except OverLimit:
+        if size == 1:
+            return Solved([_killed(chunk)], chunk.task.seconds_per_point)
+    halves = [solve_within(chunk.of(where)) for where in (slice(size // 2), slice(size // 2, None))]
+    return Solved([part for half in halves for part in half.parts], sum(half.seconds for half in halves))
+
+
+def _seconds(chunk: Chunk) -> float:
+    """The time that it may take."""
+    return chunk.task.seconds_per_point * max(1.0, len(chunk.rows) / TOGETHER)
+
+
+def solve_timed(chunk: Chunk) -> Solved:
+    """Answer every point of a chunk on this thread. Raises BrokenPlugin."""
+    begun = time.perf_counter()
+    now = under_way[id(chunk)] = UnderWay(begun - seconds_compiling(), begun, calls=chunk.calls)
+    try:
+        with told_to(now):
+            parts = solve(chunk)
+    finally:
+        under_way.pop(id(chunk), None)
+    return Solved(parts, time.perf_counter() - seconds_compiling() - now.begun)
+
+
+def _killed(chunk: Chunk) -> Part:
+    seconds = chunk.task.seconds_per_point
+    reason = f"over the limit of {seconds:g} s (limit: {{seconds_per_point: {seconds:g}}} in the study)"
+    answers = replace(refused([reason]), status=["killed"])
+    return Part(chunk.rows, text_columns(answers), {}, {})
+
 
 TICK = 0.1
 """Seconds between two looks at what goes on."""

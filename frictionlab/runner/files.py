@@ -1,15 +1,48 @@
-"""Files of a run: written whole or not at all, and known again by their length and checksum."""
+"""Files of a run: written whole or not at all, and known again by their length and checksum.
+
+What can go wrong with the folder of a run, and with files begun anew.
+
+One run at a time in a folder: a lock that the system drops with the process that holds it, however that ends.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import hashlib
 import os
 import re
+import sys
+import threading
+from collections.abc import Iterator
 from contextlib import suppress
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from frictionlab.runner.errors import SaveError
+
+class FolderError(Exception):
+    """The run cannot be written to this folder; the message says why and gives a remedy. Nothing was written."""
+
+
+class SaveError(Exception):
+    """The results could not be written, for want of room or of a working disk."""
+
+
+def not_written(path: Path, problem: OSError) -> FolderError | SaveError:
+    """Why what is begun anew could not be written there, and what to do."""
+    if isinstance(problem, FileExistsError):
+        return FolderError(f"{path} is there already and stays as it is; choose another name")
+    if isinstance(problem, FileNotFoundError | NotADirectoryError):
+        return FolderError(f"{path}: there is no folder {path.parent}; make it first, or choose another")
+    if isinstance(problem, PermissionError):
+        return FolderError(f"{path}: no permission to write in {path.parent}; choose another folder")
+    return SaveError(f"cannot write {path}: {problem.strerror}")
+
+
+class NoScheduler(Exception):
+    """There is no cluster to send chunks to; the message says why."""
+
 
 _TEMPORARY = re.compile(
     r"\.(?:results\.parquet|orbits\.parquet|.+\.(?:call|chunk|csv|html|json|py|yaml))\.(?P<process>\d+)"
@@ -65,3 +98,124 @@ def stamp_of_file(path: Path) -> dict[str, Any]:
     with path.open("rb") as file:
         checksum = hashlib.file_digest(file, "sha256").hexdigest()
         return {"bytes": file.tell(), "sha256": checksum}
+
+
+MARK_FILE = ".running"
+"""In the folder while somebody works in it; locked, it says who. One without a lock is left by a killed run."""
+_BYTE = 1 << 20
+"""Where Windows locks the file: away from the words, which others read."""
+_TAKEN = {errno.EACCES, errno.EAGAIN, errno.EDEADLK}
+
+
+class _Held(threading.local):
+    """The folders in which this thread works."""
+
+    def __init__(self) -> None:
+        self.folders: set[Path] = set()
+
+
+_held = _Held()
+
+
+@contextlib.contextmanager
+def alone_in(folder: Path, make: bool = True) -> Iterator[None]:
+    """Within, no other process and no other thread works in the folder.
+
+    make: the folder, where it is missing; it goes again where nothing was put there. Where files cannot be locked or
+    written, none is: what is written there then says what is wrong. Raises FolderError where another run is at work.
+    """
+    key = folder.absolute()
+    if key in _held.folders or not (make or key.is_dir()):
+        yield
+        return
+    made = [place for place in [key, *key.parents] if not place.exists()]
+    with contextlib.suppress(OSError):
+        key.mkdir(parents=True, exist_ok=True)
+    try:
+        mark = _taken(key)
+    except OSError:
+        other = ", or choose another folder with -o" if make else ""
+        raise FolderError(
+            f"{folder} is in use by another run{_whose(key / MARK_FILE)}; wait until it has ended{other}"
+        ) from None
+    _held.folders.add(key)
+    try:
+        yield
+    finally:
+        _held.folders.discard(key)
+        if mark is not None:
+            _given_back(mark, key / MARK_FILE)
+        with contextlib.suppress(OSError):  # nothing was written
+            for place in made:
+                place.rmdir()
+
+
+def check_free(folder: Path) -> None:
+    """Raises FolderError where another run works in the folder."""
+    if (folder / MARK_FILE).exists():
+        with alone_in(folder):
+            pass
+
+
+def _taken(folder: Path) -> int | None:
+    """The mark of the folder, locked; None where there can be none. Raises OSError where another holds it."""
+    file = folder / MARK_FILE
+    while True:
+        try:
+            mark = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
+        except OSError:
+            return None
+        try:
+            _lock(mark)
+        except OSError as problem:
+            os.close(mark)
+            if problem.errno in _TAKEN:
+                raise
+            return None
+        if _is_still(mark, file):
+            break
+        os.close(mark)  # its owner has just removed it
+    with contextlib.suppress(OSError):
+        os.ftruncate(mark, 0)
+        os.write(mark, f"process {os.getpid()}, since {datetime.now():%H:%M:%S}".encode())
+    return mark
+
+
+def _is_still(mark: int, file: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(mark), file.stat())
+    except OSError:
+        return False
+
+
+def _whose(file: Path) -> str:
+    try:
+        return f" ({file.read_text(encoding='utf-8')})"
+    except (OSError, ValueError):
+        return ""
+
+
+def _given_back(mark: int, file: Path) -> None:
+    if sys.platform == "win32":  # nobody removes a file there that is open
+        os.close(mark)
+    with contextlib.suppress(OSError):
+        file.unlink()
+    if sys.platform != "win32":
+        os.close(mark)
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(mark: int) -> None:
+        """Raises OSError where another has locked it."""
+        os.lseek(mark, _BYTE, os.SEEK_SET)
+        msvcrt.locking(mark, msvcrt.LK_NBLCK, 1)
+        os.lseek(mark, 0, os.SEEK_SET)
+
+else:
+    import fcntl
+
+    def _lock(mark: int) -> None:
+        """Raises OSError where another has locked it."""
+        fcntl.flock(mark, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -16,16 +16,21 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 
-from frictionlab.faults import INTERNAL, MARK
-from frictionlab.printable import printable
-from frictionlab.results.curve_table import CURVE_TEXT
+from frictionlab.laws.faults import INTERNAL, MARK
 from frictionlab.runner.arguments import Existing
-from frictionlab.runner.errors import FolderError, SaveError
-from frictionlab.runner.files import remove_leftovers, stamp, stamp_of_file, write_whole
-from frictionlab.runner.folder_files import FolderFiles, read_parquet
-from frictionlab.runner.machine import machine_and_versions
+from frictionlab.runner.curve_table import CURVE_TEXT
+from frictionlab.runner.files import (
+    FolderError,
+    SaveError,
+    remove_leftovers,
+    stamp,
+    stamp_of_file,
+    write_whole,
+)
+from frictionlab.runner.folder_files import FolderFiles, machine_and_versions, read_parquet
 from frictionlab.study.study import LAW_COPIES
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.written import yaml_text
+from frictionlab.values.printable import printable
 
 PAGE_MARK = '<meta name="generator" content="frictionlab'
 MOST_DIFFERENCES = 2

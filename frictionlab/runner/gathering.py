@@ -1,26 +1,103 @@
-"""The table of a run, gathered from the answers to its chunks: in one piece, or piece by piece where it is long."""
+"""The table of a run, gathered from the answers to its chunks: in one piece, or piece by piece where it is long.
+
+A long table for people: of its curves so many, of each so many points, and some of the points that are not ok.
+"""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from itertools import chain, islice
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import accumulate, chain, islice
 from typing import NamedTuple
 
+import numpy as np
 import pandas as pd
 
-from frictionlab import registry
-from frictionlab.columns import ALWAYS, OF_SHAPE
-from frictionlab.results.attractor_table import states_table
-from frictionlab.results.curve_table import curve_table
-from frictionlab.results.harmonic_table import harmonic_table
-from frictionlab.results.part import KeptRows, Part, Places
-from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts, without_empty
-from frictionlab.results.thinned import Thinned
+from frictionlab.runner.curve_table import curve_table
+from frictionlab.runner.more_tables import harmonic_table, states_table
+from frictionlab.runner.part import KeptRows, Part, Places
 from frictionlab.runner.progress import silent
 from frictionlab.runner.solving import Solving
+from frictionlab.runner.table import InputColumns, Inputs, Results, orbit_rows, status_counts, without_empty
 from frictionlab.runner.table_files import TableFiles
-from frictionlab.study import StudyCurve
+from frictionlab.study import registry
+from frictionlab.study.grid import StudyCurve, StudyGrid
+from frictionlab.values.columns import ALWAYS, OF_SHAPE, SHOWN_IN_PART
+
+LONG_TABLE = 100_000
+"""Rows above which a table is written piece by piece, and shown thinned."""
+MOST_CURVES, MOST_POINTS = 100, 200
+MOST_ODD = 1000
+
+
+def shown_rows(grid: StudyGrid) -> Places:
+    """Rows of some curves of a grid, of each the ends and points spread between them.
+
+    The curves make a grid of their own: of every axis, method and law the first, the last and some spread between.
+    """
+    curves = list(grid.curves())
+    rows = [
+        np.asarray(curves[place].rows)[_spread_over(len(curves[place].rows), MOST_POINTS)]
+        for place in _shown_curves(grid)
+    ]
+    return np.sort(np.concatenate(rows))
+
+
+def _shown_curves(grid: StudyGrid) -> list[int]:
+    """The places of curves, of all laws at the same values: ``MOST_CURVES`` at most, as many along each axis."""
+    along = [len(axis) for axis in grid.scene_axes if axis is not grid.speed_axis]
+    shapes = [(*map(len, grid.own_axes(law)), len(grid.methods), *along) for law in grid.laws]
+    firsts = [0, *accumulate(map(math.prod, shapes))]
+    laws, many = _spread_over(len(shapes), MOST_CURVES).tolist(), 1
+    while (
+        many < max(map(max, shapes))
+        and sum(math.prod(min(size, many + 1) for size in shapes[law]) for law in laws) <= MOST_CURVES
+    ):
+        many += 1
+    found = list[int]()
+    for law in laws:
+        places = np.meshgrid(*(_spread_over(size, many) for size in shapes[law]), indexing="ij")
+        found += (firsts[law] + np.ravel_multi_index([each.ravel() for each in places], shapes[law])).tolist()
+    return found
+
+
+def _spread_over(count: int, most: int) -> Places:
+    """Of so many places this many at most, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+
+
+class Thinned:
+    """The shown rows of a table that comes piece by piece."""
+
+    def __init__(self, rows: Places) -> None:
+        self._rows, self._first, self._odd = rows, 0, 0
+        self._pieces: list[pd.DataFrame] = []
+
+    def add(self, piece: pd.DataFrame) -> None:
+        """The next rows of the table."""
+        start, stop = np.searchsorted(self._rows, [self._first, self._first + len(piece)])
+        odd = np.flatnonzero((piece["status"] != "ok").to_numpy())[: MOST_ODD - self._odd]
+        places = np.union1d(self._rows[start:stop] - self._first, odd)
+        self._pieces.append(piece.iloc[places])
+        self._first += len(piece)
+        self._odd += len(odd)
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The rows so far, numbered anew."""
+        table = pd.concat(self._pieces, ignore_index=True)
+        table.attrs = {**table.attrs, SHOWN_IN_PART: True}
+        return table
+
+
+def thinned(pieces: Iterable[pd.DataFrame], rows: Places) -> pd.DataFrame:
+    """The shown rows of a table, piece by piece."""
+    found = Thinned(rows)
+    for piece in pieces:
+        found.add(piece)
+    return found.table
+
 
 ROWS_TOGETHER = 20_000
 """Rows of a piece of a long table, at least; more where those of a curve are more, or lie farther apart."""
@@ -159,7 +236,7 @@ def _memories(solving: Solving) -> list[str]:
     """The columns of memory of all laws, where orbits are kept: all rows of a file have the same."""
     if not solving.task.samples:
         return []
-    from frictionlab.orbit.sample import memory_columns  # imports numba: only where it is needed
+    from frictionlab.motion.orbit.sample import memory_columns  # imports numba: only where it is needed
 
     laws = {id(curve.given_law): curve.given_law for curve in solving.curves}.values()
     return list(dict.fromkeys(name for law in laws for name in memory_columns(law)))

@@ -1,31 +1,65 @@
-"""Solved chunks, each a file named by the hash of what it computes: found again by whatever study asks for it."""
+"""Solved chunks, each a file named by the hash of what it computes: found again by whatever study asks for it.
+
+What finds the numbers of a run, as a digest: where it changes, a point that failed may succeed, and a chunk that
+was kept is solved anew.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
+import platform
 import time
 import zlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from functools import cache
+from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from frictionlab import registry
-from frictionlab.faults import INTERNAL, MARK, from_outside
+import frictionlab
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.faults import INTERNAL, MARK, from_outside
 from frictionlab.methods.base import Method
-from frictionlab.quantities import Floats
-from frictionlab.results.part import KeptRows, Part
-from frictionlab.runner.chunks import Chunk
-from frictionlab.runner.code_digest import solving_code
+from frictionlab.runner.chunks import Chunk, KeptCalls
 from frictionlab.runner.files import remove_leftovers, write_whole
-from frictionlab.runner.kept_calls import KeptCalls
+from frictionlab.runner.part import KeptRows, Part
+from frictionlab.study import registry
+from frictionlab.study.study import Study
+from frictionlab.values.quantities import Floats
+
+SOLVERS = ("numpy", "numba", "llvmlite", "scipy")
+BESIDE = {"analysis", "bench", "charts", "cli", "report", "study", "testing"}
+"""Rooms of frictionlab that no number of a point hangs on: what a study means is in its scenes and laws."""
+
+
+def code_digest(study: Study) -> str:
+    """SHA-256 of frictionlab, of the laws and methods of other packages in a study, and of the versions they use."""
+    outside = [registry.method_code(name) for name in sorted({choice.name for choice in study.methods})]
+    return hashlib.sha256(repr((solving_code(), sorted(study.code.items()), outside)).encode()).hexdigest()
+
+
+def solving_code() -> str:
+    """SHA-256 of frictionlab and of the versions it uses."""
+    told = own_code(), platform.python_version(), [version(name) for name in SOLVERS]
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
+@cache
+def own_code(beside: Collection[str] = tuple(sorted(BESIDE))) -> str:
+    """SHA-256 of the source files of frictionlab, but for rooms beside: of those that numbers hang on."""
+    home, digest = Path(frictionlab.__file__).parent, hashlib.sha256()
+    for file in sorted(home.rglob("*.py")):
+        if file.relative_to(home).parts[0] in beside:
+            continue
+        digest.update(file.relative_to(home).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
+
 
 FolderName = str | PathLike[str]
 FOLDER = ".cache"

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.results.part import Part, Places, one_part
 from frictionlab.runner.chunks import Chunk, Task, chunk_size, cuts
 from frictionlab.runner.kept_chunks import Keys
-from frictionlab.study import StudyCurve
+from frictionlab.runner.part import Part, Places, one_part
+from frictionlab.study.grid import StudyCurve
 
 
 @dataclass(eq=False)

@@ -6,11 +6,11 @@ import hashlib
 from importlib.metadata import version
 from pathlib import Path
 
-from frictionlab.results.run import Run
 from frictionlab.runner.api import run_folder
-from frictionlab.runner.code_digest import BESIDE, own_code
 from frictionlab.runner.files import stamp_of_file
 from frictionlab.runner.folder import RunFolder
+from frictionlab.runner.kept_chunks import BESIDE, own_code
+from frictionlab.runner.run import Run
 
 MADE_BY = "charts", "report"
 """Rooms of frictionlab that make them."""

@@ -1,10 +1,14 @@
-"""A saved run: its study, table and provenance, read from its folder. Nothing is computed."""
+"""A saved run: its study, table and provenance, read from its folder. Nothing is computed.
+
+A run that was solved in memory, written as one that was solved into a folder.
+"""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -14,16 +18,19 @@ import numpy as np
 import pandas as pd
 
 from frictionlab import __version__
-from frictionlab.columns import ALWAYS, INPUTS, RESULTS, TEXT, belt_speed
-from frictionlab.results.expectations import Verdict
-from frictionlab.results.run import Run
-from frictionlab.results.table import status_counts, whole
-from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
-from frictionlab.runner.errors import FolderError
+from frictionlab.runner.api import run_folder
+from frictionlab.runner.expectations import Verdict
+from frictionlab.runner.files import FolderError, alone_in
 from frictionlab.runner.folder_files import FolderFiles, rerun
-from frictionlab.runner.table_files import read_pieces, read_whole, rows_of_file
-from frictionlab.study import Study, StudyError, read_back
+from frictionlab.runner.gathering import LONG_TABLE, shown_rows, thinned
+from frictionlab.runner.run import Run
+from frictionlab.runner.table import status_counts, whole
+from frictionlab.runner.table_files import TableFiles, read_pieces, read_whole, rows_of_file
 from frictionlab.study.grid import grid_size
+from frictionlab.study.load import read_back
+from frictionlab.study.study import Study
+from frictionlab.values.columns import ALWAYS, INPUTS, RESULTS, TEXT, belt_speed
+from frictionlab.values.notes import StudyError
 
 WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
 REPORT_FILES = frozenset({"results.parquet", "curves.csv", "onsets.csv", "boundaries.csv"})
@@ -230,3 +237,35 @@ def _check_belongs_together(saved: Saved) -> None:
 
 def _remedy(folder: Path, force: bool = True) -> str:
     return f"run the study again: {rerun(folder)}{' --force' if force else ''}"
+
+
+def save_run(done: Run, out: Path, seconds: float) -> Run:
+    """Write table, curves and account of a run that took so long [s]; the same run in its folder.
+
+    Raises FolderError where it is the folder of another study, SaveError.
+    """
+    with alone_in(out):
+        return _saved_alone(done, out, seconds)
+
+
+def _saved_alone(done: Run, out: Path, seconds: float) -> Run:
+    folder = run_folder(done.study, out)
+    folder.check("reuse")
+    folder.open("replace")
+    started = datetime.now(UTC) - timedelta(seconds=seconds)
+    told = {"started": started.isoformat(timespec="seconds"), "overrides": [], "found": 0}
+    account = {
+        "counts": done.counts,
+        "expect": [],
+        "runs": [told | {"computed": done.computed, "seconds": seconds}],
+    }
+    folder.describe(account)
+    with TableFiles(folder) as files:
+        files.add_rows(done.table)
+        files.add_orbits(done.orbits)
+        files.add_harmonics(done.harmonics)
+    for file, table in ((folder.curves_file, done.curves), (folder.attractors_file, done.attractors)):
+        if table is not None and not table.empty:
+            folder.save_text(file, table)
+    folder.describe(account, done=True)
+    return replace(done, folder=out)

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from frictionlab.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
 from frictionlab.compile.notice import seconds_compiling
-from frictionlab.faults import (
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.faults import (
     INTERNAL,
     MARK,
     BrokenPlugin,
@@ -19,13 +19,12 @@ from frictionlab.faults import (
     lost_error,
     text_of_error,
 )
-from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import NOT_UNIQUE, Answers, refused
-from frictionlab.quantities import Floats
-from frictionlab.results.derived import derived_columns
-from frictionlab.results.part import KeptRows, Part, Piece, columns_of_states
 from frictionlab.runner.chunks import Chunk
+from frictionlab.runner.part import KeptRows, Part, Piece, columns_of_states, derived_columns
 from frictionlab.scene.scene import Scene
+from frictionlab.values.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
+from frictionlab.values.quantities import Floats
 
 
 def solve(chunk: Chunk) -> list[Part]:
@@ -133,8 +132,8 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
     if "floquet" in wanted or "floquet_error" in wanted:
         found |= _multipliers(answers)
     if any(name in wanted for name in FROM_ORBITS):
-        from frictionlab.orbit.energy_errors import Means
-        from frictionlab.orbit.read import read_columns  # brings numba: only where it is needed
+        from frictionlab.motion.orbit.energy_errors import Means
+        from frictionlab.motion.orbit.read import read_columns  # brings numba: only where it is needed
 
         asks_errors = any(name.endswith("_error") for name in wanted)
         means = Means(answers.mean.real, answers.error, answers.balanced) if asks_errors else None
@@ -206,8 +205,10 @@ def _kept(chunk: Chunk, piece: Piece) -> dict[str, KeptRows]:
             kept.setdefault("states", {})[int(chunk.rows[place])] = columns_of_states(states)
     if not (task.samples or task.harmonics):
         return kept
-    from frictionlab.orbit.harmonics import harmonic_columns  # these import numba: only where it is needed
-    from frictionlab.orbit.sample import sample
+    from frictionlab.motion.orbit.sample import (
+        harmonic_columns,  # these import numba: only where it is needed
+        sample,
+    )
 
     found = {place: piece.answers.orbit(at) for at, place in enumerate(piece.places)}
     there = [(int(chunk.rows[place]), chunk.scenes[place], one) for place, one in found.items() if one]

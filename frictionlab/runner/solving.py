@@ -1,26 +1,30 @@
-"""The chunks of a study and their answers: looked up where they are kept, else solved."""
+"""The chunks of a study and their answers: looked up where they are kept, else solved.
+
+One of several shares of the chunks of a study, solved and kept: what a task of a job array does.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, Executor
 from dataclasses import replace
 from itertools import chain, count
 from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.results.part import Part
-from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts, group_size
-from frictionlab.runner.errors import SaveError
-from frictionlab.runner.execute import grouped
-from frictionlab.runner.forecast import Forecast
+from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts, group_size, task_of
+from frictionlab.runner.execute import Solved, grouped, solve_within
+from frictionlab.runner.files import SaveError
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
-from frictionlab.runner.limit import Solved, solve_within
 from frictionlab.runner.open_chunks import OpenChunk, open_chunks
+from frictionlab.runner.part import Part
+from frictionlab.runner.price import Forecast
 from frictionlab.runner.progress import Progress, silent
-from frictionlab.runner.workforce import Workforce
-from frictionlab.study import StudyCurve
+from frictionlab.runner.workforce import Workforce, workforce
+from frictionlab.study.grid import StudyCurve
+from frictionlab.study.study import Study
+from frictionlab.values.notes import Mistake, StudyError
 
 
 class Keeping(NamedTuple):
@@ -199,3 +203,26 @@ class Solving:
             return found
         part = None if self._keeping.kept is None else self._keeping.kept.found(found)
         return [part.moved(cut.rows)] if part is not None else solve_within(cut.chunk(self.task)).parts
+
+
+def run_share(
+    study: Study,
+    part: tuple[int, int],
+    kept: KeptChunks,
+    executor: Executor | Workforce | None = None,
+    progress: Progress = silent,
+) -> Solving:
+    """Solve and keep every N-th chunk of a study, from the I-th on, for part = (I, N).
+
+    Which chunks those are hangs on the study alone. Points that fail by a defect are not kept: the run that gathers
+    all parts tries them again. Raises BrokenPlugin, SaveError, BrokenExecutor, KeyboardInterrupt; what was solved by
+    then is kept. Raises StudyError where belt speeds are chosen as a run goes.
+    """
+    if study.chosen_range is not None:
+        within = f"belt speeds within {study.chosen_range.within:g} are chosen as a run goes"
+        what = f"{within}, and a part of it cannot know them: run it whole, or give num"
+        raise StudyError([Mistake("--part", None, "", what)])
+    solving = Solving(list(study.curves()), task_of(study), Keeping(kept, Keys(study.code), must_keep=True))
+    with workforce(executor) as force:
+        solving.solve(force, progress, part)
+    return solving

@@ -7,20 +7,19 @@ from math import inf
 
 import numpy as np
 
-from frictionlab.columns import ALL, RESULTS, selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.results.derived import si_columns, si_scales
-from frictionlab.results.part import Part, one_part
-from frictionlab.results.sentences_in_si import in_si_words
-from frictionlab.results.state import OrbitOf, SteadyState
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.chunks import Chunk, Task
+from frictionlab.runner.execute import within
+from frictionlab.runner.part import Part, one_part, si_columns, si_scales
 from frictionlab.runner.solve import answer, parts, solve
-from frictionlab.runner.workers import within
+from frictionlab.runner.state import OrbitOf, SteadyState
+from frictionlab.runner.words import in_si_words
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study.grid import law_in_scene
+from frictionlab.values.columns import ALL, RESULTS, selected
 
 
 def steady_state(

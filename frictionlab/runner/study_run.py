@@ -11,29 +11,27 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from frictionlab import registry
-from frictionlab.columns import ALWAYS, INPUTS, ONSETS_GROUP, RESULTS
-from frictionlab.results.attractor_table import attractor_table
-from frictionlab.results.expectations import Verdict, judge
-from frictionlab.results.part import Part
-from frictionlab.results.run import Run
-from frictionlab.results.table import finished_part, inputs, kept_rows, whole
-from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.boundaries import boundary_table
 from frictionlab.runner.chosen_speeds import choose_speeds
 from frictionlab.runner.chunks import task_of
-from frictionlab.runner.errors import SaveError
+from frictionlab.runner.expectations import Verdict, judge
+from frictionlab.runner.files import SaveError
 from frictionlab.runner.folder import ASKED, RunFolder
-from frictionlab.runner.gathering import GatheredTable
+from frictionlab.runner.gathering import LONG_TABLE, GatheredTable, shown_rows, thinned
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
-from frictionlab.runner.onsets import READ_FOR_ONSETS, lacks_multipliers, onset_table
+from frictionlab.runner.more_tables import READ_FOR_ONSETS, attractor_table, lacks_multipliers, onset_table
+from frictionlab.runner.part import Part
 from frictionlab.runner.progress import Meter, Progress, silent
+from frictionlab.runner.run import Run
 from frictionlab.runner.solving import Keeping, Solving
+from frictionlab.runner.table import finished_part, inputs, kept_rows, whole
 from frictionlab.runner.table_files import TableFiles, read_columns_of_file, read_pieces, read_whole
 from frictionlab.runner.workforce import Workforce, workforce
-from frictionlab.study import Study, StudyCurve
-from frictionlab.study.grid import grid_size
+from frictionlab.study import registry
+from frictionlab.study.grid import StudyCurve, grid_size
+from frictionlab.study.study import Study
+from frictionlab.values.columns import ALWAYS, INPUTS, ONSETS_GROUP, RESULTS
 
 
 class Interrupted(KeyboardInterrupt):

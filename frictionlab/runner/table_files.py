@@ -13,10 +13,10 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from frictionlab.results.csv_text import as_csv
-from frictionlab.results.table import may_be_left_out
-from frictionlab.runner.errors import SaveError
+from frictionlab.runner.csv_text import as_csv
+from frictionlab.runner.files import SaveError
 from frictionlab.runner.folder import RunFolder
+from frictionlab.runner.table import may_be_left_out
 
 ROWS_OF_TEXT = 10_000
 """Rows whose text is held at once."""

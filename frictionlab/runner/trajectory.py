@@ -9,13 +9,13 @@ import pandas as pd
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import at_least_one
-from frictionlab.results.derived import beside_in_si, si_scales
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
-from frictionlab.runner.workers import within
+from frictionlab.runner.execute import within
+from frictionlab.runner.part import beside_in_si, si_scales
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.study.grid import law_in_scene
+from frictionlab.values.quantities import at_least_one
 
 NO_MOTION = "no motion in time is known of this scene and law by {name}: {why}"
 NOT_DRIVEN = "it needs a driven mass, and a law that is not solved axis by axis"
@@ -61,7 +61,7 @@ def trajectory(
 
 
 def _sampled(scene: Scene, law: FrictionLaw, found: list[Orbit], samples: int) -> pd.DataFrame:
-    from frictionlab.orbit.sample import sample_at, work_of  # imports numba: only where it is needed
+    from frictionlab.motion.orbit.sample import sample_at, work_of  # imports numba: only where it is needed
 
     rows, done = [], 0.0
     for place, orbit in enumerate(found):

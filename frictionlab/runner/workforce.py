@@ -11,10 +11,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from frictionlab.runner.errors import NoScheduler
-from frictionlab.runner.execute import Renew, SentGroup, Take, collect
+from frictionlab.runner.execute import Renew, SentGroup, Take, Workers, collect
+from frictionlab.runner.files import NoScheduler
 from frictionlab.runner.open_chunks import OpenChunk
-from frictionlab.runner.workers import Workers
 
 ANSWERS_WITHIN = 10.0
 """Seconds in which a scheduler answers."""

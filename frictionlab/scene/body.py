@@ -130,7 +130,7 @@ class BodyNumbers(NamedTuple):
     ``varying``. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau). A period map spans
     ``periods`` periods of the drive. Where ``prescribed``, friction does not change the motion, the reference.
 
-    ``load`` and ``normal_load`` are the numbers of dynamics/motion.py, where they become functions of time; elsewhere
+    ``load`` and ``normal_load`` are the numbers of motion/equation.py, where they become functions of time; elsewhere
     ``normal_load``, the mean, only measures accuracies and step sizes.
 
     bends: empty where springs and dashpots are linear; else there is no reference along x1. relaxing: empty where

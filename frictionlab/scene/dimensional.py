@@ -16,9 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive, dimensions, given_values
-from frictionlab.scene.as_written import AsWritten
-from frictionlab.scene.changed import changed
+from frictionlab.scene.as_written import AsWritten, changed
 from frictionlab.scene.parts import (
     BY_TABLE,
     BeltVibration,
@@ -38,20 +36,22 @@ from frictionlab.scene.parts import (
     digest_of,
     file_alone,
 )
-from frictionlab.scene.receptance_table import TabulatedBody, read_receptance
+from frictionlab.scene.receptance import TabulatedBody, read_receptance
 from frictionlab.scene.rules import problems_of_parts, problems_of_slip, replaced_by_table
-from frictionlab.scene.springs_in_si import (
+from frictionlab.scene.units import (
     DASHPOT,
     SPRING,
+    SUFFIXES,
     SWINGS,
+    Units,
     damping_ratio_of,
     own_length,
     stiffness_of,
     time_of,
     velocity_of,
 )
-from frictionlab.scene.units import SUFFIXES, Units
 from frictionlab.scene.waveforms import SINE
+from frictionlab.values.quantities import Finite, NonNegative, Positive, dimensions, given_values
 
 STANDARD_GRAVITY = 9.81
 
@@ -169,7 +169,7 @@ class DimensionalReceptance(PartInSI):
     >>> import frictionlab as fl
     >>> fl.DimensionalReceptance(file="no_such_file.csv", free_mass="2 kg")
     Traceback (most recent call last):
-    frictionlab.mistakes.notes.WrongValues: DimensionalReceptance: there is no file no_such_file.csv
+    frictionlab.values.notes.WrongValues: DimensionalReceptance: there is no file no_such_file.csv
     """
 
     nondimensional: ClassVar[type[ScenePart]] = Receptance

@@ -12,9 +12,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive, Record
 from frictionlab.scene.body import Bends
-from frictionlab.scene.receptance_table import TabulatedBody, read_receptance
+from frictionlab.scene.receptance import TabulatedBody, read_receptance
 from frictionlab.scene.units import (
     CUBIC_DAMPING,
     CUBIC_STIFFNESS,
@@ -29,6 +28,7 @@ from frictionlab.scene.units import (
     VELOCITY,
 )
 from frictionlab.scene.waveforms import SINE, Ratio, Waveform
+from frictionlab.values.quantities import Finite, NonNegative, Positive, Record
 
 
 class ScenePart(Record):
@@ -206,7 +206,7 @@ class Receptance(ScenePart):
     >>> import frictionlab as fl
     >>> fl.Receptance(file="no_such_file.csv")
     Traceback (most recent call last):
-    frictionlab.mistakes.notes.WrongValues: Receptance: there is no file no_such_file.csv
+    frictionlab.values.notes.WrongValues: Receptance: there is no file no_such_file.csv
     """
 
     file: str

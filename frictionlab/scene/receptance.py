@@ -10,17 +10,191 @@ has gone on for ever). Powers are principal: D is analytic off the negative real
 neither gives back more than it took.
 
 Sources: Bagley & Torvik (1983); of the fractional Zener element Rossikhin & Shitikova (2010).
+
+A body's receptance as a table, measured or computed by others: read, checked and interpolated.
 """
 
 from __future__ import annotations
 
+import csv
+import hashlib
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.quantities import Floats
+from frictionlab.values.quantities import Floats
+
+NEARLY_FREE = 0.3
+"""Share by which it then differs: that of one mode at twice its frequency."""
+COLUMNS_OF_TABLE = "frequency", "real", "imaginary"
+UNITS_OF_TABLE = "_rad_per_s", "_m_per_N", "_m_per_N"
+"""Its columns, and what their names may end in where the file is in SI units."""
+
+
+@dataclass(frozen=True)
+class TabulatedBody:
+    """x1 over force at these circular frequencies; above the last one that of a free mass.
+
+    Between them the cubic through the nearest four values, of the receptance or of its inverse without the mass:
+    whichever three of them foretell better, as the one is smooth at antiresonances and the other at resonances.
+    """
+
+    frequency: tuple[float, ...]
+    values: tuple[complex, ...]
+    mass: float
+    damping: float = 0.0
+    smooth: bool = True
+
+    @property
+    def known_to(self) -> float:
+        """The last frequency."""
+        return self.frequency[-1]
+
+    @property
+    def detail(self) -> float:
+        """The last frequency, too."""
+        return self.frequency[-1]
+
+    @cached_property
+    def fastest(self) -> float:
+        """The last frequency at which the response is not yet nearly that of the free mass."""
+        omega, values = np.array(self.frequency), np.array(self.values)
+        far = np.abs(1.0 + self.mass * omega**2 * values) > NEARLY_FREE
+        return float(omega[np.flatnonzero(far)[-1]])
+
+    @cached_property
+    def digest(self) -> str:
+        """Of frequencies and values."""
+        return hashlib.sha256(repr((self.frequency, self.values)).encode()).hexdigest()[:16]
+
+    @cached_property
+    def dissipates(self) -> bool:
+        """At every frequency of the table but 0."""
+        return all(value.imag < 0.0 for value in self.values[1:])
+
+    def receptance(self, omega: Floats) -> ComplexValues:
+        """Interpolated, or beyond."""
+        at = np.asarray(omega, dtype=np.float64)
+        found = np.empty(at.shape, dtype=np.complex128)
+        above = at > self.known_to
+        found[above] = self.beyond(1j * at[above])
+        found[~above] = self._between(at[~above])
+        return found
+
+    def beyond(self, p: ComplexValues) -> ComplexValues:
+        """That of the free mass."""
+        return 1.0 / (self.mass * np.asarray(p) ** 2)
+
+    def scaled(self, frequency_unit: float, receptance_unit: float) -> TabulatedBody:
+        """The same body, frequency and receptance multiplied by these; the mass is told in the new units already."""
+        values = tuple(receptance_unit * each for each in self.values)
+        return TabulatedBody(tuple(frequency_unit * each for each in self.frequency), values, self.mass)
+
+    def halved(self) -> TabulatedBody:
+        """Every other row, the last one kept."""
+        last = () if len(self.frequency) % 2 else (-1,)
+        rows = [*range(0, len(self.frequency), 2), *last]
+        return TabulatedBody(
+            tuple(self.frequency[k] for k in rows), tuple(self.values[k] for k in rows), self.mass
+        )
+
+    def _between(self, at: Floats) -> ComplexValues:
+        nodes, values = np.array(self.frequency), np.array(self.values)
+        direct = _cubic(nodes, values, at)
+        inertia = self.mass if np.isfinite(self.mass) else 0.0
+        inverse = _cubic(nodes, 1.0 / values + inertia * nodes**2, at)
+        other = 1.0 / (inverse[0] - inertia * at**2)
+        return np.where(np.abs(other) ** 2 * inverse[1] < direct[1], other, direct[0])
+
+
+def _cubic(nodes: Floats, values: ComplexValues, at: Floats) -> tuple[ComplexValues, Floats]:
+    """The polynomial through the nearest four nodes (or all, if they are fewer), and how far that through all but the
+    farthest of them is from it."""
+    count = min(4, len(nodes))
+    first = np.clip(np.searchsorted(nodes, at) - 2, 0, len(nodes) - count)
+    x, y = (each[first[:, None] + np.arange(count)] for each in (nodes, values))
+    whole = _lagrange(x, y, at)
+    farthest = np.abs(x - at[:, None]).argmax(axis=1)
+    kept = np.arange(count) != farthest[:, None]
+    less = _lagrange(x[kept].reshape(-1, count - 1), y[kept].reshape(-1, count - 1), at)
+    return whole, np.abs(whole - less)
+
+
+def _lagrange(x: Floats, y: ComplexValues, at: Floats) -> ComplexValues:
+    total = np.zeros(len(at), dtype=np.complex128)
+    for j in range(x.shape[1]):
+        share = np.ones(len(at))
+        for k in range(x.shape[1]):
+            if k != j:
+                share = share * (at - x[:, k]) / (x[:, j] - x[:, k])
+        total = total + share * y[:, j]
+    return total
+
+
+def read_receptance(file: str, free_mass: float | None, in_si: bool = False) -> TabulatedBody:
+    """The body of a file. Raises ValueError with a sentence that begins with the file and the line.
+
+    in_si: the names of columns may have units behind them.
+    """
+    path = Path(file)
+    try:
+        stamp = path.stat().st_mtime_ns
+    except OSError as problem:
+        raise ValueError(f"there is no file {file}") from problem
+    frequency, values = _read(file, in_si, stamp)
+    return TabulatedBody(frequency, values, np.inf if free_mass is None else free_mass)
+
+
+@lru_cache(maxsize=16)
+def _read(file: str, in_si: bool, _stamp: int) -> tuple[tuple[float, ...], tuple[complex, ...]]:
+    rows = list(csv.reader(Path(file).read_text(encoding="utf-8-sig").splitlines()))
+    head = [name.strip() for name in rows[0]] if rows else []
+    if in_si:
+        plain = {f"{name}{unit}": name for name, unit in zip(COLUMNS_OF_TABLE, UNITS_OF_TABLE, strict=True)}
+        head = [plain.get(name, name) for name in head]
+    if missing := [name for name in COLUMNS_OF_TABLE if name not in head]:
+        raise ValueError(
+            f"{file}:1: no column {' and '.join(missing)}; it needs frequency, real and imaginary"
+        )
+    places = [head.index(name) for name in COLUMNS_OF_TABLE]
+    frequency: list[float] = []
+    values: list[complex] = []
+    for line, row in enumerate(rows[1:], 2):
+        if not any(cell.strip() for cell in row):
+            continue
+        try:
+            omega, real, imaginary = (float(row[place]) for place in places)
+        except (ValueError, IndexError) as problem:
+            raise ValueError(f"{file}:{line}: needs three numbers, got {','.join(row)!r}") from problem
+        if wrong := _wrong_row(frequency, omega, complex(real, imaginary)):
+            raise ValueError(f"{file}:{line}: {wrong}")
+        frequency.append(omega)
+        values.append(complex(real, imaginary))
+    if len(frequency) < 2:
+        raise ValueError(f"{file}: needs at least two rows")
+    return tuple(frequency), tuple(values)
+
+
+def _wrong_row(before: list[float], omega: float, value: complex) -> str:
+    """What is wrong with a row after those of these frequencies, or ''."""
+    if not (np.isfinite(omega) and np.isfinite(value)):
+        return "needs finite numbers"
+    if not before and omega != 0.0:
+        return f"begins at frequency {omega:g}: frequency 0 is required, x1 under a constant force"
+    if before and omega == before[-1]:
+        return f"frequency {omega:g} is repeated"
+    if before and omega < before[-1]:
+        return f"frequency {omega:g} after {before[-1]:g}: frequencies must rise"
+    if not before and not (value.imag == 0.0 and value.real > 0.0):
+        return "at frequency 0 the receptance is real and above 0"
+    if value.imag > 0.0:
+        return f"not passive at frequency {omega:g}: the imaginary part of x1 over force must not be above 0"
+    return "" if value != 0.0 else f"the receptance is 0 at frequency {omega:g}"
+
 
 ComplexValues = NDArray[Any]
 

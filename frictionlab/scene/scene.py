@@ -8,18 +8,21 @@ L, force K_1 L, velocity omega_1 L, energy K_1 L^2. The equations of motion are 
 
 with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2'), or against a belt that vibrates
 and under a normal load that changes where the scene says so; ``body`` adds what is not linear, or remembers.
+
+What shakes a scene, from its parts; read once of all scenes that differ in belt speed alone.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from typing import Any, cast
+from functools import lru_cache
+from typing import Any, NamedTuple, cast
 
 from pydantic import ValidationError, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive, given_values
+from frictionlab.scene.as_written import changed, with_values
 from frictionlab.scene.body import Mass, Motion, with_free_motion
-from frictionlab.scene.changed import changed, with_values
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
     BENDING,
@@ -40,9 +43,71 @@ from frictionlab.scene.parts import (
     TransverseSlip,
 )
 from frictionlab.scene.rules import periods_of, problems_of_parts, problems_of_slip, replaced_by_table
-from frictionlab.scene.shaking import Shaking, keeps_stiffness, shaking_by
-from frictionlab.scene.signals import Signal, Signals
+from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
+from frictionlab.scene.varying import varying_of
 from frictionlab.scene.waveforms import SINE, form_of
+from frictionlab.values.quantities import Finite, NonNegative, Positive, given_values
+
+
+class Shaking(NamedTuple):
+    """Everything that changes in time, its harmonics at the frequency of the drive along x1 and x2, and what kernels
+    are told of what changes otherwise than as one sine; nothing where nothing does."""
+
+    signals: Signals
+    load: tuple[complex, complex]
+    belt: tuple[complex, complex]
+    varying: Any
+
+
+@lru_cache(maxsize=1024)
+def shaking_by(
+    parts: tuple[Drive | None, Load | None, Slip | None, TransverseSlip | None],
+    others: tuple[BeltVibration | None, NormalLoadVariation | None],
+    omega: float,
+    periods: int,
+    normal_load: float,
+    is_harmonic: bool,
+) -> Shaking:
+    (drive, load, slip, across), (belt, normal) = parts, others
+    moved = _pair(slip or belt, across, omega)
+    variation = _signal(normal, omega).scaled(normal_load)
+    signals = Signals(FULL_TURN * periods / omega, _pair(drive, load, omega), moved, variation)
+    first, second, third, fourth = (
+        each.harmonic(omega, signals.period) for each in (*signals.load, *signals.belt)
+    )
+    varying = () if is_harmonic else varying_of(signals, omega, keeps_stiffness(normal))
+    return Shaking(signals, (first, second), (third, fourth), varying)
+
+
+def keeps_stiffness(part: NormalLoadVariation | None) -> bool:
+    """Whether bristles do while the normal load changes."""
+    return part is not None and part.amplitude > 0.0 and part.contact == "constant"
+
+
+def _signal(part: Any, omega: float) -> Signal:
+    """Its waveform, as large as it says; omega: the frequency of the drive."""
+    if part is None:
+        return Signal()
+    ratio = getattr(part, "frequency_ratio", None) or 1.0
+    return signal_of(part.waveform or SINE, omega * ratio, part.phase).scaled(part.size(omega))
+
+
+def _pair(part: Any, across: Any, omega: float) -> tuple[Signal, Signal]:
+    """A part and one across the belt: along x1, and along x2."""
+    along, aside = _turned(_signal(part, omega), (part and part.direction) or 0.0)
+    return along, aside if across is None else _signal(across, omega)
+
+
+def _turned(signal: Signal, direction: float) -> tuple[Signal, Signal]:
+    """Its parts along x1 and x2, where it acts at an angle [degrees] to x1; right angles to the last digit."""
+    quarters, rest = divmod(direction, 90.0)
+    along, across = (
+        (1.0, 0.0) if rest == 0.0 else (math.cos(math.radians(rest)), math.sin(math.radians(rest)))
+    )
+    for _ in range(int(quarters) % 4):
+        along, across = -across, along
+    return signal.scaled(along), signal.scaled(across)
+
 
 __all__ = [
     "BeltVibration",

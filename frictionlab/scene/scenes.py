@@ -9,8 +9,8 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats
 
 
 class Scenes(Sequence[Scene]):

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.waveforms import Form
+from frictionlab.values.quantities import Floats
 
 FULL_TURN = 2.0 * math.pi
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.signals import Signal, Signals
+from frictionlab.values.quantities import Floats
 
 
 class Waves(NamedTuple):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
 
-from frictionlab.mistakes.notes import Notes, did_you_mean, value_text
+from frictionlab.values.notes import Notes, did_you_mean, value_text
 
 DATA_KEYS, RANGE_KEYS = ("file", "columns"), ("from", "to", "spacing")
 SPACINGS = "linear", "log"

@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from frictionlab import columns
-from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
-from frictionlab.mistakes.validation import checked_value, placed, record_at
 from frictionlab.scene.as_written import in_si
 from frictionlab.scene.scene import Scene
 from frictionlab.study.parts import Expectation, WhereValue
 from frictionlab.study.written import column_of
-from frictionlab.units.text import in_units
+from frictionlab.values import columns
+from frictionlab.values.notes import KeyPath, Notes, did_you_mean, value_text
+from frictionlab.values.units import in_units
+from frictionlab.values.validation import checked_value, placed, record_at
 
 EXPECTATION_KEYS = (
     *("where", "minus", "over", "column", "equals", "below", "above", "within"),
@@ -50,7 +50,7 @@ def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, .
     return tuple(expectation for expectation in read if expectation is not None)
 
 
-def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectation | None:
+def _expectation(given: Any, path: KeyPath, table: Table, notes: Notes) -> Expectation | None:
     if notes.mapping(given, path) is None:
         return None
     for key in given:
@@ -64,7 +64,7 @@ def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectat
 
 
 def _where(
-    given: Any, path: Path, table: Table, notes: Notes, read: Callable[..., WhereValue | None]
+    given: Any, path: KeyPath, table: Table, notes: Notes, read: Callable[..., WhereValue | None]
 ) -> dict[str, WhereValue]:
     """The input columns and values that select rows; read: of one of them what it must be."""
     where: dict[str, WhereValue] = {}
@@ -78,7 +78,7 @@ def _where(
     return where
 
 
-def _wanted(given: Any, path: Path, key: str, table: Table, notes: Notes) -> WhereValue | None:
+def _wanted(given: Any, path: KeyPath, key: str, table: Table, notes: Notes) -> WhereValue | None:
     """What an input of rows must be: one value, one of several, or a number within a range."""
     if isinstance(given, list):
         read = [_input(value, (*path, index), key, table, notes) for index, value in enumerate(given)]
@@ -92,7 +92,7 @@ def _wanted(given: Any, path: Path, key: str, table: Table, notes: Notes) -> Whe
     return {end: value for end, value in ends.items() if isinstance(value, float)}
 
 
-def _input(value: Any, path: Path, key: str, table: Table, notes: Notes) -> str | float | None:
+def _input(value: Any, path: KeyPath, key: str, table: Table, notes: Notes) -> str | float | None:
     """One value of an input column."""
     if key in table.texts:
         return _known_text(value, path, table.texts[key], notes)
@@ -114,7 +114,7 @@ def _written(key: str, column: str, value: Any, table: Table) -> Any:
 
 
 def _word_of_scene(
-    value: Any, path: Path, column: str, known: tuple[str, ...] | None, notes: Notes
+    value: Any, path: KeyPath, column: str, known: tuple[str, ...] | None, notes: Notes
 ) -> str | None:
     """A word of the scene, or a waveform as the scene gives it or as the table does: as it stands in the table."""
     if isinstance(value, str) and value in (known or ()):
@@ -128,7 +128,7 @@ def _word_of_scene(
     return str(held)
 
 
-def _number(value: Any, path: Path, column: str, notes: Notes) -> float | None:
+def _number(value: Any, path: KeyPath, column: str, notes: Notes) -> float | None:
     """A number, or what the scene takes for one, such as the ratio 3/2."""
     if isinstance(value, str) and column.startswith("scene."):
         held, what, _ = _as_in_scene(column, value)
@@ -145,11 +145,11 @@ def _as_in_scene(column: str, value: Any) -> tuple[Any, str | None, str]:
     return checked_value(record, key, value)
 
 
-def _known_text(value: Any, path: Path, known: tuple[str, ...] | None, notes: Notes) -> str | None:
+def _known_text(value: Any, path: KeyPath, known: tuple[str, ...] | None, notes: Notes) -> str | None:
     return notes.text(value, path) if known is None else notes.one_of(value, path, known)
 
 
-def _claim(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+def _claim(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
     """The claim about the rows: a number, a status, a difference of two methods, or the shape of a curve."""
     if "status" in given:
         _only(given, ("status",), path, notes)
@@ -160,7 +160,7 @@ def _claim(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dic
     return _shape(given, path, table, notes) if "shape" in given else _comparison(given, path, table, notes)
 
 
-def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+def _difference(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
     _only(given, ("max_difference", "below"), path, notes)
     pair, at = given["max_difference"], (*path, "max_difference")
     below = _positive(given, "below", path, notes)
@@ -173,7 +173,7 @@ def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
     return {"max_difference": tuple(labels), "below": below}
 
 
-def _shape(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+def _shape(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
     """A verdict on whole curves."""
     _only(given, ("shape", "measure"), path, notes)
     _of_curves(given, "shape", path, table, notes)
@@ -182,7 +182,7 @@ def _shape(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dic
     return {"shape": notes.one_of(given["shape"], (*path, "shape"), shapes), "measure": measure}
 
 
-def _of_curves(given: dict[str, Any], key: str, path: Path, table: Table, notes: Notes) -> None:
+def _of_curves(given: dict[str, Any], key: str, path: KeyPath, table: Table, notes: Notes) -> None:
     """Note what does not go with whole curves: belt speeds that select rows, or none swept."""
     where = given.get("where")
     for name in where if isinstance(where, dict) else ():
@@ -192,7 +192,7 @@ def _of_curves(given: dict[str, Any], key: str, path: Path, table: Table, notes:
         notes.on_key((*path, key), f"a shape needs a curve: sweep {table.belt_speed}")
 
 
-def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+def _comparison(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
     if "measure" in given:
         notes.on_key((*path, "measure"), "goes with shape")
     column = None
@@ -219,7 +219,7 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
     return {"column": column, **said}
 
 
-def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
+def _column(given: Any, path: KeyPath, table: Table, notes: Notes) -> str | None:
     name = result_column(given, path, (*table.results, *columns.CURVE_MEASURES), notes)
     if name in columns.TEXT:
         notes.add(path, f"'{name}' holds text; only numbers can be compared")
@@ -227,7 +227,7 @@ def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
 
 
 def result_column(
-    given: Any, path: Path, results: Sequence[str], notes: Notes, what: str = "result column"
+    given: Any, path: KeyPath, results: Sequence[str], notes: Notes, what: str = "result column"
 ) -> str | None:
     """The name of one of these result columns; None, noted, where it is none."""
     if not isinstance(given, str) or given not in results:
@@ -239,14 +239,14 @@ def result_column(
     return given
 
 
-def _positive(given: dict[str, Any], key: str, path: Path, notes: Notes) -> float | None:
+def _positive(given: dict[str, Any], key: str, path: KeyPath, notes: Notes) -> float | None:
     if key not in given:
         notes.add((*path, key), "required key is missing")
         return None
     return notes.positive(given[key], (*path, key))
 
 
-def _only(given: dict[str, Any], own: tuple[str, ...], path: Path, notes: Notes) -> None:
+def _only(given: dict[str, Any], own: tuple[str, ...], path: KeyPath, notes: Notes) -> None:
     """Note the keys that belong to another kind of expectation."""
     for key in given:
         if key in EXPECTATION_KEYS and key not in (*own, "where", "because"):

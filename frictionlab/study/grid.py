@@ -15,8 +15,6 @@ from pydantic import ValidationError
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.mistakes.notes import Mistake, StudyError
-from frictionlab.quantities import Written
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.units import Units, scaled_law
@@ -25,6 +23,8 @@ from frictionlab.study.axes import (
     SCENE,
     Axis,
     GridValue,
+    SpeedRange,
+    SweepRange,
     axes_of,
     grid_points,
     owner_of,
@@ -32,8 +32,9 @@ from frictionlab.study.axes import (
     point_at,
 )
 from frictionlab.study.parts import LawChoice, MethodChoice
-from frictionlab.study.ranges import SpeedRange, SweepRange
-from frictionlab.units.shown import ShownUnit, units_written
+from frictionlab.values.notes import Mistake, StudyError
+from frictionlab.values.quantities import Written
+from frictionlab.values.units import ShownUnit, units_written
 
 
 @dataclass(frozen=True)

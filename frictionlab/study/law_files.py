@@ -12,12 +12,20 @@ from typing import Any, Literal, NamedTuple
 
 from pydantic import create_model
 
-from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.mistakes.notes import Mistake, Notes, Path, StudyError, did_you_mean, value_text
-from frictionlab.mistakes.text_file import Unreadable, text_of
-from frictionlab.registry.law_file import LawFile, code_of, law_name, read_law_file
+from frictionlab.study import registry
+from frictionlab.study.registry import LawFile, code_of, law_name, read_law_file
 from frictionlab.study.yaml_source import Source
+from frictionlab.values.notes import (
+    KeyPath,
+    Mistake,
+    Notes,
+    StudyError,
+    Unreadable,
+    did_you_mean,
+    text_of,
+    value_text,
+)
 
 KEY = "plugins"
 
@@ -69,7 +77,7 @@ def read_laws(tree: dict[str, Any], folder: FilePath, notes: Notes) -> StudyLaws
     return StudyLaws(files, laws_of(files))
 
 
-def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, Path]]:
+def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, KeyPath]]:
     """The files a study lists, each with its path in the study."""
     given = tree.get(KEY, [])
     if not isinstance(given, list):
@@ -79,7 +87,7 @@ def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, Path]]:
     return [(name, path) for name, path in named if name]
 
 
-def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | None:
+def _read(name: str, path: KeyPath, folder: FilePath, notes: Notes) -> LawFile | None:
     try:
         return read_law_file(folder / name)
     except Unreadable as problem:

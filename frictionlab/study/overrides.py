@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from frictionlab.mistakes.notes import Note, Path, StudyError, did_you_mean, dotted
 from frictionlab.study.written import column_of
 from frictionlab.study.yaml_source import Source, read_text
+from frictionlab.values.notes import KeyPath, Note, StudyError, did_you_mean, dotted
 
 _RANGE = ("start", "stop", "num", "spacing", "within")
 
@@ -40,10 +40,10 @@ class _Override:
             return self._refuse(path, "set twice")
         return None if path is None else self._put(path, value)
 
-    def _refuse(self, path: Path, what: str, hint: str = "") -> None:
+    def _refuse(self, path: KeyPath, what: str, hint: str = "") -> None:
         self._source.notes.append(Note(path, what, hint, origin=self._origin))
 
-    def _path(self, target: str) -> Path | None:
+    def _path(self, target: str) -> KeyPath | None:
         head, _, rest = target.partition(".")
         if head == "sweep" and rest:
             return self._sweep(rest)
@@ -57,7 +57,7 @@ class _Override:
             steps += [found[1], *map(int, re.findall(r"\d+", found[2]))]
         return tuple(steps)
 
-    def _sweep(self, rest: str) -> Path:
+    def _sweep(self, rest: str) -> KeyPath:
         """A swept path is a single key that contains points; the parts of a range are keys below it."""
         key, _, part = rest.rpartition(".")
         swept = {column_of(each): each for each in map(str, self._under("sweep"))}
@@ -68,7 +68,7 @@ class _Override:
         found = self._source.tree.get(key)
         return found if isinstance(found, (dict, list)) else ()
 
-    def _labelled(self, head: str, rest: str) -> Path | None:
+    def _labelled(self, head: str, rest: str) -> KeyPath | None:
         label, _, key = rest.rpartition(".")
         labels = [_label(item) for item in self._under(head)]
         if key and label in labels:
@@ -78,7 +78,7 @@ class _Override:
                      did_you_mean(given, labels))  # fmt: skip
         return None
 
-    def _put(self, path: Path, value: Any) -> None:
+    def _put(self, path: KeyPath, value: Any) -> None:
         at = self._source.tree
         for length, step in enumerate(path[:-1]):
             at = self._stepped(at, path[: length + 1], step)
@@ -94,7 +94,7 @@ class _Override:
         self._forget(path)
         self._source.origins[path] = self._origin
 
-    def _leave_out_others(self, at: dict[str, Any], path: Path) -> None:
+    def _leave_out_others(self, at: dict[str, Any], path: KeyPath) -> None:
         """Remove other keys of the same value: ``belt_speed`` beside ``belt_speed_m_per_s``."""
         above = path[:-1] if path[0] == "scene" else ()
         column = column_of(dotted((*above, path[-1])))
@@ -102,7 +102,7 @@ class _Override:
             del at[other]
             self._forget((*path[:-1], other))
 
-    def _stepped(self, at: Any, path: Path, step: str | int) -> Any:
+    def _stepped(self, at: Any, path: KeyPath, step: str | int) -> Any:
         """The value one step down; a mapping that the study lacks is added."""
         if isinstance(at, dict) and isinstance(step, str):
             if step not in at:
@@ -114,7 +114,7 @@ class _Override:
         what = f"there is no item [{step}]" if isinstance(step, int) else f"there is no '{step}' to set it in"
         return self._refuse(path, what)
 
-    def _forget(self, path: Path) -> None:
+    def _forget(self, path: KeyPath) -> None:
         """Remove the positions and the mistakes of the value that was replaced."""
         source = self._source
         for places in (source.keys, source.values):

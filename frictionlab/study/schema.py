@@ -8,20 +8,19 @@ from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
 
-from frictionlab import columns, registry
-from frictionlab.mistakes.validation import nested, number_paths
-from frictionlab.registry.records import description, meaning
 from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
-from frictionlab.study import reader
-from frictionlab.study.axes import FRICTION, LINKED
+from frictionlab.study import reader, registry
+from frictionlab.study.axes import ENDS, FRICTION, LINKED, SpeedRange, SweepRange
 from frictionlab.study.data import SPACINGS
 from frictionlab.study.figure_options import EVERY, FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
-from frictionlab.study.ranges import ENDS, SpeedRange, SweepRange
+from frictionlab.study.records import description, meaning
 from frictionlab.study.study import SECONDS_PER_POINT
-from frictionlab.units.text import quantity_in
+from frictionlab.values import columns
+from frictionlab.values.units import quantity_in
+from frictionlab.values.validation import nested, number_paths
 
 _KEYS = {
     "schema": "version of the rules that the study is written by",

@@ -8,17 +8,15 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from frictionlab import registry
-from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text
-from frictionlab.mistakes.validation import field_name, number_paths, record_at, value_paths
 from frictionlab.scene.as_written import without_unit
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.springs_in_si import DASHPOT, SPRING, SWINGS
-from frictionlab.study.axes import FRICTION, LINKED, STATIC
-from frictionlab.study.choices import label_of
-from frictionlab.study.parts import coefficient_of
-from frictionlab.study.ranges import ENDS
+from frictionlab.scene.units import DASHPOT, SPRING, SWINGS
+from frictionlab.study import registry
+from frictionlab.study.axes import ENDS, FRICTION, LINKED, STATIC
+from frictionlab.study.parts import coefficient_of, label_of
 from frictionlab.study.written import column_of, scene_is_in_si
+from frictionlab.values.notes import KeyPath, Notes, did_you_mean, number_text
+from frictionlab.values.validation import field_name, number_paths, record_at, value_paths
 
 _GROUPS = (
     ("unbalance", "amplitude"),
@@ -35,7 +33,7 @@ _GROUPS = (
 class Target:
     """What one sweep varies: ``key`` of the mapping at ``parent``, a field of ``record``."""
 
-    parent: Path
+    parent: KeyPath
     key: str
     record: type[BaseModel]
 
@@ -81,7 +79,7 @@ class Targets:
         sure = visible and len(self._labels) == len(each) > 0
         return sure and all(isinstance(law, dict) and law.get("kind") in kinds for law in each)
 
-    def at(self, key: str, path: Path) -> list[Target]:
+    def at(self, key: str, path: KeyPath) -> list[Target]:
         """What a sweep of this name, at this path, varies; nothing, noted, where there is no such thing."""
         if key == FRICTION:
             return self._of_every_law(path)
@@ -97,7 +95,7 @@ class Targets:
             found = None
         return [] if found is None else [found]
 
-    def _hint(self, key: str, at: Path) -> str:
+    def _hint(self, key: str, at: KeyPath) -> str:
         """The value whose path ends so, of a part that the study has; else the name most similar to the one given."""
         names = {path: {path, without_unit(path)} for path in self._sweepable}
         ending = (path for path in names if any(f".{name}".endswith(f".{key}") for name in names[path]))
@@ -106,7 +104,7 @@ class Targets:
         known = [*dict.fromkeys(map(as_told, names)), FRICTION, LINKED]
         return did_you_mean(as_told(found or key), known)
 
-    def _has_texts(self, at: Path) -> bool:
+    def _has_texts(self, at: KeyPath) -> bool:
         """Whether values of a sweep are written as text, with units then: so its name needs none."""
         given = value_at(self._tree, at)
         each = [given.get(end) for end in ENDS] if isinstance(given, dict) else given
@@ -121,7 +119,7 @@ class Targets:
         """Whether the study sweeps the friction coefficient of every law."""
         return FRICTION in swept_paths(self._tree)
 
-    def _of_every_law(self, path: Path) -> list[Target]:
+    def _of_every_law(self, path: KeyPath) -> list[Target]:
         """The friction coefficient of sliding of every law of a known kind."""
         found = []
         for label, index in self._labels.items():
@@ -143,8 +141,8 @@ class Targets:
                 found.append(Target(("laws", index), name, law))
         return found
 
-    def _of_scene(self, steps: list[str], path: Path) -> Target | None:
-        parent: Path = ("scene", *steps[:-1])
+    def _of_scene(self, steps: list[str], path: KeyPath) -> Target | None:
+        parent: KeyPath = ("scene", *steps[:-1])
         if steps[0] != "dimensional" and isinstance(value_at(self._tree, ("scene", "dimensional")), dict):
             what = "the scene is given in SI units: sweep its values under scene.dimensional"
             self._notes.on_key(path, what, self._hint(f"scene.dimensional.{'.'.join(steps)}", path))
@@ -162,7 +160,7 @@ class Targets:
             return None
         return Target(parent, steps[-1], record)
 
-    def _of_law(self, key: str, path: Path) -> Target | None:
+    def _of_law(self, key: str, path: KeyPath) -> Target | None:
         label, _, parameter = key.removeprefix("laws.").rpartition(".")
         index = self._labels.get(label)
         if index is None and not self._all_known:
@@ -178,7 +176,9 @@ class Targets:
             else None
         )
 
-    def _of_parameter(self, at: Path, kind: str, label: str, parameter: str, path: Path) -> Target | None:
+    def _of_parameter(
+        self, at: KeyPath, kind: str, label: str, parameter: str, path: KeyPath
+    ) -> Target | None:
         law = self._laws.named(kind)
         if self._with_friction and parameter in (coefficient_of(law), STATIC):
             self._notes.on_key(path, f"the study sweeps friction, which sets {parameter} of every law")
@@ -211,7 +211,7 @@ def swept_paths(tree: dict[str, Any]) -> tuple[str, ...]:
     return tuple(column_of(key) for each in lists if isinstance(each, dict) for key in each if key != LINKED)
 
 
-def value_at(tree: Any, path: Path) -> Any:
+def value_at(tree: Any, path: KeyPath) -> Any:
     """The value at this path, None if there is none; if the tree ends before the path does, its last value."""
     for step in path:
         if isinstance(tree, list) and isinstance(step, int):

@@ -8,15 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from frictionlab import registry
-from frictionlab.columns import BELT_SPEEDS
-from frictionlab.mistakes.notes import Notes, Path, number_text, value_text
-from frictionlab.mistakes.validation import build_record, checked_value, placed, wrong_value
-from frictionlab.study.axes import LINKED, GridValue
-from frictionlab.study.ranges import ENDS, WITHIN, SpeedRange, SweepRange
+from frictionlab.study import registry
+from frictionlab.study.axes import ENDS, LINKED, WITHIN, GridValue, SpeedRange, SweepRange
 from frictionlab.study.sweep_targets import Target, Targets, value_at
 from frictionlab.study.written import column_of, number_written, scene_is_in_si
-from frictionlab.units.text import number_before_unit
+from frictionlab.values.columns import BELT_SPEEDS
+from frictionlab.values.notes import KeyPath, Notes, number_text, value_text
+from frictionlab.values.units import number_before_unit
+from frictionlab.values.validation import build_record, checked_value, placed, wrong_value
 
 
 @dataclass
@@ -29,8 +28,8 @@ class Sweeps:
     sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
     ranges: dict[str, SweepRange | SpeedRange] = field(default_factory=dict)
     links: tuple[tuple[str, ...], ...] = ()
-    stand_ins: dict[Path, Path] = field(default_factory=dict)
-    written: dict[str, Path] = field(default_factory=dict)
+    stand_ins: dict[KeyPath, KeyPath] = field(default_factory=dict)
+    written: dict[str, KeyPath] = field(default_factory=dict)
 
 
 def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Sweeps:
@@ -54,7 +53,7 @@ class _SweepReader:
         self._in_si = scene_is_in_si(tree)
         self.found = Sweeps()
 
-    def read(self, key: str, values: Any, path: Path, linked: bool = False) -> None:
+    def read(self, key: str, values: Any, path: KeyPath, linked: bool = False) -> None:
         """One list or range, of a path by itself or of one among those of a linked entry."""
         name = column_of(key)
         targets = self._targets.at(name, path)
@@ -109,7 +108,7 @@ class _SweepReader:
         if not given:
             self._notes.add(("sweep", LINKED), "the list is empty; give at least one entry")
         for index, entry in enumerate(given):
-            path: Path = ("sweep", LINKED, index)
+            path: KeyPath = ("sweep", LINKED, index)
             if (lists := self._notes.mapping(entry, path)) is None:
                 continue
             if len(lists) < 2:
@@ -121,7 +120,7 @@ class _SweepReader:
             if not self._notes.below(path):
                 self._check_entry({name: self.found.sweep[name] for name in map(column_of, lists)}, path)
 
-    def _check_entry(self, lists: dict[str, tuple[GridValue, ...]], path: Path) -> None:
+    def _check_entry(self, lists: dict[str, tuple[GridValue, ...]], path: KeyPath) -> None:
         sizes = {key: len(values) for key, values in lists.items()}
         first = next(iter(sizes))
         for key, size in sizes.items():
@@ -144,8 +143,8 @@ def _stand_in(
     tree: dict[str, Any],
     target: Target,
     values: tuple[GridValue, ...],
-    stand_ins: dict[Path, Path],
-    path: Path,
+    stand_ins: dict[KeyPath, KeyPath],
+    path: KeyPath,
 ) -> None:
     """Complete a scene or law with the first of the swept values, which need not be given a second time."""
     within = value_at(tree, target.parent)
@@ -158,7 +157,7 @@ def _stand_in(
         stand_ins[(*target.parent, target.key)] = path
 
 
-def _read_values(given: Any, target: Target | None, path: Path, notes: Notes, unique: bool) -> Read:
+def _read_values(given: Any, target: Target | None, path: KeyPath, notes: Notes, unique: bool) -> Read:
     """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
     words = target is not None and not target.is_number
     if isinstance(given, list):
@@ -174,13 +173,15 @@ def _read_values(given: Any, target: Target | None, path: Path, notes: Notes, un
     return ()
 
 
-def _list_values(given: list[Any], target: Target | None, path: Path, notes: Notes) -> list[GridValue | None]:
+def _list_values(
+    given: list[Any], target: Target | None, path: KeyPath, notes: Notes
+) -> list[GridValue | None]:
     if not given:
         notes.add(path, "the list is empty; give at least one value")
     return [_list_value(item, target, (*path, index), notes) for index, item in enumerate(given)]
 
 
-def _note_doubles(values: Sequence[GridValue | None], path: Path, notes: Notes) -> None:
+def _note_doubles(values: Sequence[GridValue | None], path: KeyPath, notes: Notes) -> None:
     seen: dict[GridValue, int] = {}
     for index, value in enumerate(values):
         if value is not None and seen.setdefault(value, index) != index:
@@ -188,7 +189,7 @@ def _note_doubles(values: Sequence[GridValue | None], path: Path, notes: Notes) 
             notes.add((*path, index), f"{told} is in the list twice")
 
 
-def _list_value(item: Any, target: Target | None, path: Path, notes: Notes) -> GridValue | None:
+def _list_value(item: Any, target: Target | None, path: KeyPath, notes: Notes) -> GridValue | None:
     """One value as the scene or law holds it; None, noted, where it cannot."""
     if target is None:  # the mistake is in the key
         return item if isinstance(item, float | int | str) else None
@@ -202,7 +203,7 @@ def _list_value(item: Any, target: Target | None, path: Path, notes: Notes) -> G
     return value
 
 
-def _built(read: Read, path: Path, notes: Notes) -> tuple[GridValue, ...]:
+def _built(read: Read, path: KeyPath, notes: Notes) -> tuple[GridValue, ...]:
     """The values; of belt speeds that are chosen as a run goes the ends."""
     if not isinstance(read, SweepRange):
         return read.ends if isinstance(read, SpeedRange) else read

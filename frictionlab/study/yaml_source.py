@@ -13,9 +13,17 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from frictionlab.mistakes.notes import Mistake, Note, Path, StudyError, TextPosition, dotted
-from frictionlab.mistakes.text_file import Unreadable, text_of
-from frictionlab.printable import one_line
+from frictionlab.values.notes import (
+    KeyPath,
+    Mistake,
+    Note,
+    StudyError,
+    TextPosition,
+    Unreadable,
+    dotted,
+    text_of,
+)
+from frictionlab.values.printable import one_line
 
 TOO_DEEP = "not a study: nested too deeply"
 
@@ -45,9 +53,9 @@ class Source:
     name: str
     text: str = ""
     tree: Any = None
-    keys: dict[Path, TextPosition] = field(default_factory=dict)
-    values: dict[Path, TextPosition] = field(default_factory=dict)
-    origins: dict[Path, str] = field(default_factory=dict)
+    keys: dict[KeyPath, TextPosition] = field(default_factory=dict)
+    values: dict[KeyPath, TextPosition] = field(default_factory=dict)
+    origins: dict[KeyPath, str] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
 
     @cached_property
@@ -55,7 +63,7 @@ class Source:
         """The lines of the text."""
         return _LINE_END.split(self.text)
 
-    def also_at(self, path: Path, given: Path) -> None:
+    def also_at(self, path: KeyPath, given: KeyPath) -> None:
         """Let a path stand where another one, and what is below it, is given."""
         for places in (self.keys, self.values, self.origins):
             for at in [each for each in places if each[: len(given)] == given]:
@@ -144,7 +152,7 @@ def _place(mark: Any) -> TextPosition:
     return TextPosition(mark.line + 1, mark.column + 1)
 
 
-def _value(source: Source, node: Any, path: Path) -> Any:
+def _value(source: Source, node: Any, path: KeyPath) -> Any:
     """The node as a plain value; its position and those below it are recorded."""
     source.values.setdefault(path, _place(node.start_mark))
     kind = str(node.tag).removeprefix(_TAG)
@@ -165,7 +173,7 @@ def _value(source: Source, node: Any, path: Path) -> Any:
         return text
 
 
-def _mapping(source: Source, node: MappingNode, path: Path) -> dict[str, Any]:
+def _mapping(source: Source, node: MappingNode, path: KeyPath) -> dict[str, Any]:
     read: dict[str, Any] = {}
     for key, item in node.value:
         place = _place(key.start_mark)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frictionlab.testing.battery import CHECKS, EXAMPLES, check_law
-from frictionlab.testing.check import Check
-from frictionlab.testing.outcome import LawFailed, Outcome, Report, heading
+from frictionlab.testing.example import Check
+from frictionlab.testing.running import LawFailed, Outcome, Report, heading
 
 __all__ = ["CHECKS", "EXAMPLES", "Check", "LawFailed", "Outcome", "Report", "check_law", "heading"]

@@ -8,10 +8,9 @@ from dataclasses import replace
 from typing import Literal
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.testing.check import Check
 from frictionlab.testing.checks import compiled, declared, limits, path, record, symmetry
-from frictionlab.testing.outcome import LawFailed, Outcome, Report
-from frictionlab.testing.running import run_check
+from frictionlab.testing.example import Check
+from frictionlab.testing.running import LawFailed, Outcome, Report, run_check
 
 MODULES = record, symmetry, declared, path, compiled, limits
 """What a law must have before anything else can be asked of it comes first."""

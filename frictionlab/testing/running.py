@@ -1,24 +1,167 @@
-"""Running a check on drawn examples under a time limit, with the smallest counterexample of a failure."""
+"""Running a check on drawn examples under a time limit, with the smallest counterexample of a failure.
+
+A block of Python that is stopped where it takes too long.
+
+The results of a battery, one per check: as a text table, as records and as a Markdown table.
+"""
 
 from __future__ import annotations
 
+import ctypes
 import sys
+import threading
 import time
 import warnings
-from collections.abc import Callable
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
 
 from hypothesis import Phase, given
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
-from frictionlab.faults import describe_error
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.testing.check import Check
-from frictionlab.testing.example import Given, Violation
-from frictionlab.testing.outcome import Outcome
+from frictionlab.laws.faults import describe_error
+from frictionlab.testing.example import Check, Given, Violation
 from frictionlab.testing.strategies import NoParameters, quietly
-from frictionlab.testing.time_limit import TimeLimitExceeded, time_limit
+
+
+class TimeLimitExceeded(BaseException):
+    """Raised at the time limit; not an Exception, so that a law cannot catch it by ``except Exception``."""
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise TimeLimitExceeded in this thread if the block takes longer; compiled code is not interrupted."""
+    thread, done, turn = threading.get_ident(), threading.Event(), threading.Lock()
+
+    def watch() -> None:
+        wait = seconds
+        while not done.wait(wait):
+            wait = 0.5  # again: what is raised inside a callback of the collector is lost
+            with turn:
+                if not done.is_set():
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                        ctypes.c_ulong(thread), ctypes.py_object(TimeLimitExceeded)
+                    )
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        with turn:
+            done.set()
+
+
+Result = Literal["passed", "failed", "skipped", "expected failure"]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The result of one check.
+
+    examples: how many were run. reason: of a skip or of an expected failure. counterexample: the smallest one of a
+    failure: what is wrong, with its numbers. seconds: compilation included.
+    """
+
+    check: str
+    result: Result
+    examples: int
+    reason: str = ""
+    counterexample: str = ""
+    seconds: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        """Whether it did not fail, expected failures apart."""
+        return self.result != "failed"
+
+    @property
+    def remark(self) -> str:
+        """Reason and counterexample."""
+        return "; ".join(part for part in (self.reason, self.counterexample) if part)
+
+    def line(self, remark: str | None = None) -> str:
+        """One line of a table, with its own remark or this one."""
+        told = self.remark if remark is None else remark
+        return f"{self.check:32}  {self.result:16}  {self.examples:5}  {told}".rstrip()
+
+
+@dataclass(frozen=True)
+class Report:
+    """All checks of one law, in the order they ran."""
+
+    law: str
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether no check failed, expected failures apart."""
+        return all(outcome.good for outcome in self.outcomes)
+
+    @property
+    def failures(self) -> list[Outcome]:
+        """The checks that failed and were not expected to."""
+        return [outcome for outcome in self.outcomes if not outcome.good]
+
+    def outcome(self, check: str) -> Outcome:
+        """That of one check. Raises KeyError."""
+        return {outcome.check: outcome for outcome in self.outcomes}[check]
+
+    def count(self, result: Result) -> int:
+        """The number of checks with this result."""
+        return sum(outcome.result == result for outcome in self.outcomes)
+
+    def skips(self) -> list[str]:
+        """A line on what does not apply, reason by reason; none where everything ran."""
+        reasons = Counter(outcome.reason for outcome in self.outcomes if outcome.result == "skipped")
+        told = "; ".join(f"{count} {reason}" for reason, count in reasons.most_common())
+        return [f"checks that do not apply: {told}"] if told else []
+
+    def records(self) -> list[dict[str, Any]]:
+        """One record a check, the class of the law first."""
+        return [{"law": self.law, **asdict(outcome)} for outcome in self.outcomes]
+
+    def summary(self, name: str = "") -> str:
+        """One line: the number of checks with each result, and of examples."""
+        ends: Sequence[Result] = "passed", "failed", "skipped", "expected failure"
+        counts = [f"{self.count(end)} {end}" for end in ends if self.count(end)]
+        seconds = sum(outcome.seconds for outcome in self.outcomes)
+        ran = sum(outcome.examples for outcome in self.outcomes)
+        return f"{name or self.law}: {', '.join(counts)}; {ran} examples in {seconds:.0f} s"
+
+    def __str__(self) -> str:
+        return "\n".join([*(outcome.line() for outcome in self.outcomes), self.summary()])
+
+    def markdown(self, name: str = "") -> str:
+        """A table to publish beside the law."""
+        head = ["| check | result | examples | remark |", "| --- | --- | ---: | --- |"]
+        rows = [
+            f"| {outcome.check} | {outcome.result} | {outcome.examples} | {_table_cell(outcome.remark)} |"
+            for outcome in self.outcomes
+        ]
+        return "\n".join([f"### {name or self.law}", "", *head, *rows, "", self.summary(name)])
+
+
+class LawFailed(AssertionError):
+    """A law that does not conform; ``report`` has every check, the message the failed ones."""
+
+    def __init__(self, report: Report) -> None:
+        self.report = report
+        lines = [f"{outcome.check}: {outcome.counterexample}" for outcome in report.failures]
+        super().__init__("\n".join([report.summary(), *lines]))
+
+
+def heading(name: str) -> str:
+    """The heading above the outcomes of a law."""
+    return f"\n{name}\n{'check':32}  {'result':16}  {'ran':>5}"
+
+
+def _table_cell(text: str) -> str:
+    return " ".join(text.replace("|", "\\|").split())
 
 
 class ExampleCount:

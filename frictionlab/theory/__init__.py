@@ -6,17 +6,6 @@ of steady sliding.
 
 from __future__ import annotations
 
-from frictionlab.quantities import Floats
-from frictionlab.theory.compliant_means import (
-    mean_soft_circular,
-    mean_soft_dahl,
-    mean_soft_elasto_plastic,
-    mean_soft_jenkins,
-    mean_soft_transverse,
-    reversal_kick,
-    slip_back_and_forth,
-    stiff_correction,
-)
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.theory.loops import (
     coulomb_describing_function,
@@ -40,8 +29,17 @@ from frictionlab.theory.prescribed import (
     mean_prescribed_longitudinal,
     mean_prescribed_pulsating,
     mean_prescribed_transverse,
+    mean_soft_circular,
+    mean_soft_dahl,
+    mean_soft_elasto_plastic,
+    mean_soft_jenkins,
+    mean_soft_transverse,
+    reversal_kick,
+    slip_back_and_forth,
+    stiff_correction,
 )
 from frictionlab.theory.sliding_stability import SteadySliding
+from frictionlab.values.quantities import Floats
 
 __all__ = [
     "CONCAVE_BY_AREA",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from frictionlab.quantities import Floats
+from frictionlab.values.quantities import Floats
 
 Complexes = NDArray[np.complex128]
 

@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.receptance import ComplexValues, LinearBody
+from frictionlab.values.quantities import Floats
 
 TERMS = 16
 """Of a panel: a sine through half a radian a side is a polynomial of 15th degree to rounding, and so is a power over

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.signals import Signal, Wave
+from frictionlab.values.quantities import EPSILON, Floats
 
 PieceNumbers = NDArray[np.int64]
 _ROUNDING = 8.0 * EPSILON

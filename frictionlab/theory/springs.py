@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass, with_relaxing
 from frictionlab.scene.receptance import RememberingBody
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats
 
 COUNT = 8
 """Springs of a sum."""

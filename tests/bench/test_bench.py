@@ -17,23 +17,22 @@ from fake_methods import Another, Fake, breaks_down, register
 from profiles import deep
 
 from frictionlab import bench, cli
-from frictionlab.bench import pictures
+from frictionlab.bench import account as pictures
 from frictionlab.bench.curve import CurveResult
-from frictionlab.bench.measure import chosen, time_task
+from frictionlab.bench.measure import chosen, solve_points, time_task
 from frictionlab.bench.peers import base
+from frictionlab.bench.peers.equations import ScipySteps
 from frictionlab.bench.peers.listing import PEERS
-from frictionlab.bench.peers.scipy_steps import ScipySteps
 from frictionlab.bench.record import Row, Times
-from frictionlab.bench.solvers import solve_points
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.base import Answers
 from frictionlab.methods.exact.method import Exact
-from frictionlab.quantities import Finite
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
-from frictionlab.study import StudyError
+from frictionlab.values.notes import StudyError
+from frictionlab.values.quantities import Finite
 
 LISTS = Path(__file__).parents[1] / "benchmarks"
 SPEEDS = [1.0, 2.0, 4.0, 8.0]

@@ -13,9 +13,8 @@ from profiles import deep
 
 from frictionlab import bench, cli
 from frictionlab.bench import account
-from frictionlab.bench.account import circumstances, small_print
+from frictionlab.bench.account import MOST_ROWS_ON_PAGE, bench_page, circumstances, small_print
 from frictionlab.bench.curve import CurveResult
-from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page
 from frictionlab.bench.peers import base
 from frictionlab.methods.reduced import common
 

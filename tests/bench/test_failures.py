@@ -15,15 +15,14 @@ from fake_methods import Another, Fake, register
 from profiles import deep
 
 from frictionlab import bench, cli
-from frictionlab.bench.failures.measure import MapTruth
-from frictionlab.bench.failures.record import edges, free_velocities
-from frictionlab.bench.failures.section import FailureResult
-from frictionlab.bench.peers.scipy_steps import ScipySteps
+from frictionlab.bench.failure_maps import MapTruth, edges, free_velocities
+from frictionlab.bench.failures import FailureResult
+from frictionlab.bench.peers.equations import ScipySteps
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
-from frictionlab.quantities import Finite, Floats
 from frictionlab.scene.scene import Scene
-from frictionlab.study import StudyError
+from frictionlab.values.notes import StudyError
+from frictionlab.values.quantities import Finite, Floats
 
 LIST = """\
 schema: 1

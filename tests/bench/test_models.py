@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from frictionlab import bench, cli
-from frictionlab.bench.models import BenchedModel, ModelRow, ModelsResult, front
+from frictionlab.bench.curve import BenchedModel, ModelRow, ModelsResult, front
 from frictionlab.bench.record import NO_TIME, BenchSetting, Contender, Row, Times
-from frictionlab.study import StudyError
+from frictionlab.values.notes import StudyError
 
 LIST = """
 schema: 1

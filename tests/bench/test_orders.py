@@ -10,11 +10,8 @@ import numpy as np
 import pytest
 from profiles import deep
 
-from frictionlab.bench.orders.fit import fit_order
-from frictionlab.bench.orders.motions import MOTIONS
-from frictionlab.bench.orders.section import OrdersResult, OrdersSection
-from frictionlab.bench.orders.solvers import ORDER_SOLVERS
-from frictionlab.bench.orders.theory import theory_of
+from frictionlab.bench.order_solvers import MOTIONS, ORDER_SOLVERS
+from frictionlab.bench.orders import OrdersResult, OrdersSection, fit_order, theory_of
 from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution
 

@@ -13,14 +13,18 @@ import pytest
 from profiles import deep, some
 
 from frictionlab import bench
-from frictionlab.bench.pictures import draw
-from frictionlab.bench.stability import steppers
-from frictionlab.bench.stability.limits import measured_limit, predicted_limit, stepper_limit
-from frictionlab.bench.stability.peers import MAPPED_PEERS, peer_limit
-from frictionlab.bench.stability.problems import PROBLEMS
-from frictionlab.bench.stability.record import MapPoint
-from frictionlab.bench.stability.section import StabilityResult, StabilitySection
-from frictionlab.bench.stability.steppers import MAPPED_STEPPERS
+from frictionlab.bench import stability_solvers as steppers
+from frictionlab.bench.account import draw
+from frictionlab.bench.stability import StabilityResult, StabilitySection
+from frictionlab.bench.stability_grid import PROBLEMS, MapPoint
+from frictionlab.bench.stability_solvers import (
+    MAPPED_PEERS,
+    MAPPED_STEPPERS,
+    measured_limit,
+    peer_limit,
+    predicted_limit,
+    stepper_limit,
+)
 
 
 def mapped(name: str, problem: str, grid: int) -> StabilityResult:

@@ -22,7 +22,7 @@ sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[1])]
 
 import conftest  # noqa: E402, F401  # plugins are seen without being installed
 import frictionlab as fl  # noqa: E402
-from frictionlab import registry  # noqa: E402
+from frictionlab.study import registry  # noqa: E402
 
 Keys = dict[str, Any]
 WRONG = "WRONG"

@@ -56,7 +56,7 @@ def serve() -> None:
 
 
 def _answered(fl: Any, one: dict[str, Any]) -> dict[str, Any]:
-    from frictionlab import registry
+    from frictionlab.study import registry
 
     scene, law, method = dict(one["scene"]), dict(one["law"]), dict(one["method"])
     kind = method.pop("kind")

@@ -22,14 +22,13 @@ from frictionlab.charts import figures
 from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
-from frictionlab.charts.end_labels import moved_apart
 from frictionlab.charts.figures import FIGURES, FigureData, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
-from frictionlab.charts.sheet import Heading
-from frictionlab.charts.style import STYLE
+from frictionlab.charts.marks import moved_apart
+from frictionlab.charts.sheet import STYLE, Heading
 from frictionlab.charts.sweeps import is_logarithmic
-from frictionlab.columns import RESULTS, symbol
 from frictionlab.study.figure_options import FigureOptions
+from frictionlab.values.columns import RESULTS, symbol
 
 
 @pytest.fixture(scope="module")

@@ -11,11 +11,11 @@ from drawn_figures import drawn
 from oracle import table_in_the_plane
 from profiles import deep
 
-from frictionlab.bench.charts.style import OURS, THEIRS
+from frictionlab.bench.charts.curve import OURS, THEIRS
 from frictionlab.charts.bifurcation import LONGER, PERIOD_MARKERS, WILD
-from frictionlab.charts.contrast import contrast, luminance, with_contrast
+from frictionlab.charts.looks import contrast, luminance, with_contrast
 from frictionlab.charts.needs import ERROR
-from frictionlab.charts.style import CYCLE, STYLE, write_figure
+from frictionlab.charts.sheet import CYCLE, STYLE, write_figure
 
 LEAST_CONTRAST = 3.0  # of a line against white (WCAG 2.1, 1.4.11)
 LINES = [look["color"] for look in CYCLE]

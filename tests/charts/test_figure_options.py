@@ -20,9 +20,10 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, chosen_of, draw_figures, figure_of, figures_of
-from frictionlab.charts.style import STYLE
-from frictionlab.study import StudyError, parse_study
+from frictionlab.charts.sheet import STYLE
 from frictionlab.study.figure_options import FigureOptions, figure_options
+from frictionlab.study.load import parse_study
+from frictionlab.values.notes import StudyError
 
 
 @pytest.fixture(scope="module")

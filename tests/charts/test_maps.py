@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 from profiles import deep
 
 import frictionlab as fl
+from frictionlab.charts.derived import v_lin_of
 from frictionlab.charts.figures import FigureData, figures_of
 from frictionlab.charts.maps import map_of
-from frictionlab.charts.v_lin import v_lin_of
-from frictionlab.columns import SHOWN_IN_PART
+from frictionlab.values.columns import SHOWN_IN_PART
 
 FREQUENCIES, LOADS = np.linspace(0.5, 2.0, 7), np.geomspace(1.0, 100.0, 5)
 

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from frictionlab.charts.needs import needs_figure
-from frictionlab.columns import NEEDS
+from frictionlab.values.columns import NEEDS
 
 
 def row(curve: str, without: str, verdict: str, change: float, smallest: bool = False) -> dict[str, object]:

@@ -11,7 +11,7 @@ from drawn_figures import NOTHING, drawn, legend_of, names_of, titles_of
 from matplotlib.figure import Figure
 
 from frictionlab.charts.figures import FigureData, Kept, figures_of
-from frictionlab.charts.jumps import with_jumps
+from frictionlab.charts.kept_figures import with_jumps
 
 SPEEDS = np.arange(1.0, 13.0)
 OMEGA, SAMPLES = 2.0, 40

@@ -11,11 +11,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, Kept, figures_of
-from frictionlab.charts.sheet import write_heading
-from frictionlab.charts.style import STYLE
-from frictionlab.results.summary import summary
-from frictionlab.results.table import whole
-from frictionlab.units.shown import handy_unit, in_shown_units
+from frictionlab.charts.sheet import STYLE, write_heading
+from frictionlab.runner.summary import summary
+from frictionlab.runner.table import whole
+from frictionlab.values.units import handy_unit, in_shown_units
 
 DRIVE = "scene.dimensional.drive.frequency"
 SPEED = "scene.dimensional.belt_speed"

@@ -24,11 +24,11 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.bench import load_bench
 from frictionlab.charts import figures
-from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
-from frictionlab.runner.in_use import alone_in
-from frictionlab.study import load_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.runner.files import alone_in
+from frictionlab.study.bibliography import read_bibtex
+from frictionlab.study.load import load_study
+from frictionlab.study.written import yaml_text
 
 POINTS = [4.0, 13.0, -2.0, 9.0]
 DOOR = "[frictionlab.methods]\nfake = fake_methods:Fake\n"
@@ -654,7 +654,7 @@ def test_two_runs_into_one_folder_and_parts_of_one(frictionlab: Any) -> None:
 def test_every_command_is_a_module_of_its_name() -> None:
     files = {path.stem for path in Path(cli.__file__).parent.glob("*.py")}
 
-    assert {*cli.COMMANDS} == files - {"__init__", "figures", "interrupts", "measured", "options", "output"}
+    assert {*cli.COMMANDS} == files - {"__init__", "interrupts", "options", "output", "scaffold"}
     assert [*cli.COMMANDS] == sorted(cli.COMMANDS)
 
 

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from frictionlab import cli
-from frictionlab.columns import NEEDS
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.written import yaml_text
+from frictionlab.values.columns import NEEDS
 
 GIVEN: dict[str, Any] = {
     "schema": 1,

@@ -12,7 +12,7 @@ import pytest
 from profiles import deep
 
 from frictionlab import cli
-from frictionlab.printable import printable
+from frictionlab.values.printable import printable
 
 STUDY = """schema: 1
 title: "\\e[31m\\a red \\ud83d\\ude00"

@@ -19,14 +19,14 @@ from frictionlab.compile import cache, law_addresses
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.dispatch import KnownLaw, by_dimension
-from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.faults import CannotCompile
 from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.march.laps import march_laps
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.periodic.setting import maps_of
-from frictionlab.methods.reduced.loops import harmonics_of_legs
+from frictionlab.methods.reduced.bristle import harmonics_of_legs
 from frictionlab.methods.shooting.undriven_path import follow_undriven
 
 FILES = {
@@ -219,7 +219,9 @@ def test_how_records_check_what_they_are_given_is_no_part_of_a_kernel():
     pieces = list(cache._pieces([LuGre, Coulomb], set()))
 
     assert [piece for piece in pieces if "LuGre.rate" in piece]
-    assert not [piece for piece in pieces if "frictionlab.mistakes" in piece or "pydantic_core" in piece]
+    assert not [
+        piece for piece in pieces if "frictionlab.values.validation" in piece or "pydantic_core" in piece
+    ]
 
 
 def _vowel(letter):

@@ -7,7 +7,7 @@ import numba.extending
 import pytest
 from numba.core.errors import TypingError
 
-from frictionlab.compile.collection import pause_collection
+from frictionlab.compile.cache import pause_collection
 
 pause_collection()
 

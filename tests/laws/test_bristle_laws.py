@@ -24,12 +24,12 @@ from strategies import (
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
-from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic, breakaway_share
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
+from frictionlab.motion.contact import resistance
 from frictionlab.theory import (
     dahl_describing_function,
     dahl_drift,

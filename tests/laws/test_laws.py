@@ -17,9 +17,9 @@ from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.registry import law_class, law_names
+from frictionlab.study.registry import law_class, law_names
 from frictionlab.testing import check_law
+from frictionlab.values.notes import WrongValues
 
 every_law = pytest.mark.parametrize("name", LAWS)
 

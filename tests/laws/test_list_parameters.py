@@ -9,10 +9,11 @@ import pandas as pd
 import pytest
 
 import frictionlab as fl
-from frictionlab.registry import law_class
-from frictionlab.registry.records import law_record
-from frictionlab.study import StudyError, parse_study
+from frictionlab.study.load import parse_study
+from frictionlab.study.records import law_record
+from frictionlab.study.registry import law_class
 from frictionlab.study.schema import schema
+from frictionlab.values.notes import StudyError
 
 LAW = {"kind": "maxwell-slip", "mu": [0.3, 0.1], "stiffness": [40, 5.5]}
 SLIP = {"belt_speed": 5, "slip": {"velocity_amplitude": 10, "frequency": 1}}

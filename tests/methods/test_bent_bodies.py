@@ -12,10 +12,10 @@ from profiles import deep
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
-from frictionlab import registry
 from frictionlab.methods.periodic import problem
-from frictionlab.results.loads_in_time import start_is_known
-from frictionlab.theory.uniqueness import resonates_once
+from frictionlab.runner.curve_loads import start_is_known
+from frictionlab.study import registry
+from frictionlab.theory.rest import resonates_once
 
 LINE: dict[str, Any] = {
     "damping_ratio": 0.1,

@@ -26,10 +26,11 @@ from scenes_of_every_kind import (
 )
 from scipy.integrate import solve_ivp
 
-from frictionlab import registry, steady_state
+from frictionlab import steady_state
 from frictionlab.laws.dahl import Dahl
 from frictionlab.methods.auto import Auto
 from frictionlab.scene.scene import Scene
+from frictionlab.study import registry
 
 ROWS = (REFERENCE / "more_scenes.csv").read_text(encoding="utf-8").splitlines()
 TRUTH = {row["name"]: row for row in csv.DictReader(ROWS)}

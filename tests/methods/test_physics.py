@@ -24,8 +24,8 @@ from frictionlab.methods.exact.return_map import passage
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import WEIGHTS
-from frictionlab.orbit.sample import sample
+from frictionlab.motion.orbit.recorder import WEIGHTS
+from frictionlab.motion.orbit.sample import sample
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.theory import friction_free_velocity
 

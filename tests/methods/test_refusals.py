@@ -9,7 +9,8 @@ import pytest
 import scene_table
 from scene_table import LINE, PLANE
 
-from frictionlab import Coulomb, Dahl, ElastoPlastic, Scene, registry
+from frictionlab import Coulomb, Dahl, ElastoPlastic, Scene
+from frictionlab.study import registry
 
 SCENES = scene_table.SCENES | {
     "pushed across": LINE | {"transverse": PLANE["transverse"], "initial": {"x2": 1.0}},

@@ -14,7 +14,7 @@ from profiles import DEEP, some
 from scenes_of_every_kind import BEATS, Keys, belt, line, load, plane, slip
 
 import frictionlab as fl
-from frictionlab.registry import law_class
+from frictionlab.study.registry import law_class
 from frictionlab.theory import friction_free_velocity
 
 MU = 0.4

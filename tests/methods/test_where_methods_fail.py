@@ -16,8 +16,8 @@ from profiles import some
 
 import frictionlab as fl
 from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.peers.equations import ScipySteps
 from frictionlab.bench.peers.scipy_events import ScipyEvents
-from frictionlab.bench.peers.scipy_steps import ScipySteps
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution

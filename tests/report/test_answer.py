@@ -15,9 +15,9 @@ from profiles import some
 from frictionlab.charts.figures import FigureData
 from frictionlab.report.answer import sentences
 from frictionlab.report.facts import Facts
-from frictionlab.results.expectations import Verdict
+from frictionlab.runner.expectations import Verdict
 from frictionlab.runner.saved import Saved
-from frictionlab.study import Study
+from frictionlab.study.study import Study
 
 SPEED, FREQUENCY = "scene.belt_speed", "scene.drive.frequency"
 NONE = math.nan

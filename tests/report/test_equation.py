@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from frictionlab.report.equation import equations, letters_sentence
-from frictionlab.study import parse_study
+from frictionlab.study.load import parse_study
 
 LINE = {
     "damping_ratio": 0.1,

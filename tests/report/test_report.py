@@ -19,18 +19,18 @@ from profiles import deep, some
 from run_folders import without_stamps
 
 import frictionlab as fl
-from frictionlab.columns import _IN_SI, _NAMES
-from frictionlab.registry.bibliography import read_bibtex
-from frictionlab.report import bibtex, tables, write_index, write_report
+from frictionlab.cli.scaffold import new_study
+from frictionlab.report import tables
 from frictionlab.report.facts import Facts
 from frictionlab.report.figures import pictures
-from frictionlab.report.markup import html, symbol_html
-from frictionlab.report.page import report, wall
-from frictionlab.report.sources import sources
+from frictionlab.report.page import report, wall, write_index, write_report
+from frictionlab.report.sources import bibtex, sources
+from frictionlab.report.tables import html, symbol_html
 from frictionlab.runner import api, workforce
-from frictionlab.runner.errors import FolderError
+from frictionlab.runner.files import FolderError
 from frictionlab.runner.saved import Saved, read_saved, saved_as
-from frictionlab.scaffold.study import new_study
+from frictionlab.study.bibliography import read_bibtex
+from frictionlab.values.columns import _IN_SI, _NAMES
 
 SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
 PLAIN = {"schema": 1, "scene": SCENE, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["fake"]}

@@ -25,16 +25,16 @@ from profiles import deep, some
 from run_folders import without_stamps
 
 import frictionlab as fl
-from frictionlab import registry
-from frictionlab.columns import ALWAYS, DEFAULT, RESULTS, TEXT
-from frictionlab.results.summary import summary
-from frictionlab.results.table import inputs, records
 from frictionlab.runner import api, table_files
 from frictionlab.runner.chunks import Task, chunk_size, cuts
-from frictionlab.runner.errors import FolderError, SaveError
+from frictionlab.runner.files import FolderError, SaveError
 from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.solve import solve
-from frictionlab.study import load_study, parse_study
+from frictionlab.runner.summary import summary
+from frictionlab.runner.table import inputs, records
+from frictionlab.study import registry
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.values.columns import ALWAYS, DEFAULT, RESULTS, TEXT
 
 Trouble = Callable[[dict[float, Callable[[], object]]], None]
 

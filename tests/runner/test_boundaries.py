@@ -14,12 +14,12 @@ from scipy.optimize import brentq
 
 import frictionlab as fl
 from frictionlab.charts.maps import map_of_curves
-from frictionlab.registry import INSTALLED_LAWS
 from frictionlab.runner.api import with_boundaries
-from frictionlab.runner.curve_measures import measures_of
+from frictionlab.runner.boundaries import measures_of
 from frictionlab.runner.workforce import threads
-from frictionlab.study import StudyError
+from frictionlab.study.registry import INSTALLED_LAWS
 from frictionlab.theory import friction_free_velocity
+from frictionlab.values.notes import StudyError
 
 SPEEDS = {"start": 2, "stop": 60, "num": 30}
 DRIVE = fl.Drive(amplitude=10, frequency=1)

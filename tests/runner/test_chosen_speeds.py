@@ -13,15 +13,15 @@ from pandas.testing import assert_frame_equal
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.quantities import Floats
-from frictionlab.results.bends import halves_to_add
 from frictionlab.runner import api
+from frictionlab.runner.batch import plan
+from frictionlab.runner.chosen_speeds import halves_to_add
 from frictionlab.runner.kept_chunks import KeptChunks
-from frictionlab.runner.plan import plan
 from frictionlab.runner.saved import read_saved
-from frictionlab.runner.share import run_share
-from frictionlab.runner.solving import Solving
-from frictionlab.study import StudyError, load_study, parse_study
+from frictionlab.runner.solving import Solving, run_share
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.values.notes import StudyError
+from frictionlab.values.quantities import Floats
 
 WITHIN = 1e-3
 LAWS = [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.2, "label": "smooth"}]

@@ -13,14 +13,15 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.columns import ALWAYS, FROM_ORBITS, GROUPS, RESULTS, TEXT, columns_of
 from frictionlab.methods.exact.method import _Curve
 from frictionlab.methods.periodic import continuation
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.runner.folder import FolderError
-from frictionlab.study import StudyError, load_study, parse_study
+from frictionlab.study.load import load_study, parse_study
 from frictionlab.study.schema import schema
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.written import yaml_text
+from frictionlab.values.columns import ALWAYS, FROM_ORBITS, GROUPS, RESULTS, TEXT, columns_of
+from frictionlab.values.notes import StudyError
 
 SPEEDS = [5.0, 20.0]
 LINE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
@@ -248,7 +249,7 @@ def test_the_command_finds_the_columns_of_its_option(tmp_path: Path, capsys: Any
 
 
 def test_a_column_that_raises_at_one_point_leaves_the_others_their_numbers(monkeypatch):
-    from frictionlab.orbit import read
+    from frictionlab.motion.orbit import read
 
     whole = read.read_columns
 

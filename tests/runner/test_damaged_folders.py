@@ -19,13 +19,12 @@ from run_folders import without_stamps
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts import figures
-from frictionlab.printable import printable
 from frictionlab.runner.api import run_folder
-from frictionlab.runner.errors import FolderError
-from frictionlab.runner.files import remove_leftovers
+from frictionlab.runner.files import FolderError, remove_leftovers
 from frictionlab.runner.saved import read_saved
-from frictionlab.study import load_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.load import load_study
+from frictionlab.study.written import yaml_text
+from frictionlab.values.printable import printable
 
 pytestmark = deep("seconds of runs")
 

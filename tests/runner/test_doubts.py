@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from frictionlab.runner.doubts import doubts
-from frictionlab.study import load_study
+from frictionlab.runner.batch import doubts
+from frictionlab.study.load import load_study
 
 STUDY = """schema: 1
 scene:

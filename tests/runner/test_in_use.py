@@ -13,13 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.runner.errors import FolderError
-from frictionlab.runner.in_use import MARK_FILE, alone_in, check_free
+from frictionlab.runner.files import MARK_FILE, FolderError, alone_in, check_free
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from frictionlab.runner.in_use import alone_in
+from frictionlab.runner.files import alone_in
 with alone_in(Path(sys.argv[1])):
     print("at work", flush=True)
     time.sleep(60.0)

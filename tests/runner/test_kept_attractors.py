@@ -14,8 +14,8 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts.bifurcation import bifurcations
-from frictionlab.columns import ATTRACTORS, OF_STATES
 from frictionlab.runner import study_run
+from frictionlab.values.columns import ATTRACTORS, OF_STATES
 
 STUDY = """
 schema: 1

@@ -17,7 +17,7 @@ import frictionlab as fl
 from frictionlab.methods import under_way
 from frictionlab.methods.periodic.problem import Transient
 from frictionlab.runner.api import Interrupted
-from frictionlab.runner.kept_calls import KeptCalls
+from frictionlab.runner.chunks import KeptCalls
 
 pytestmark = deep("seconds of runs")
 

@@ -18,7 +18,7 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.runner import code_digest
+from frictionlab.runner import kept_chunks as code_digest
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.solve import solve

@@ -11,7 +11,7 @@ from pandas.testing import assert_frame_equal
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.columns import HARMONICS
+from frictionlab.values.columns import HARMONICS
 
 pytestmark = deep("seconds of runs")
 

@@ -12,10 +12,11 @@ import pytest
 from fake_methods import Fake, faked, register
 
 import frictionlab as fl
-from frictionlab.runner import limit
+from frictionlab.runner import execute as limit
 from frictionlab.runner.chunks import Chunk
-from frictionlab.runner.workers import OverLimit, Workers, within
-from frictionlab.study import StudyError, parse_study
+from frictionlab.runner.execute import OverLimit, Workers, within
+from frictionlab.study.load import parse_study
+from frictionlab.values.notes import StudyError
 
 STUDY = faked([4, 5, 6, 7, 8], limit={"seconds_per_point": 0.3})
 
@@ -60,7 +61,7 @@ def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(releas
 
 
 def test_compilation_does_not_count(monkeypatch):
-    monkeypatch.setattr("frictionlab.runner.workers.compiling", lambda: True)
+    monkeypatch.setattr("frictionlab.runner.execute.compiling", lambda: True)
 
     assert within(0.01, lambda: time.sleep(0.3) or "done") == "done"
 

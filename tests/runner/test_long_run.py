@@ -16,11 +16,11 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.results import thinned
 from frictionlab.runner import api, gathering, saved, study_run, workforce
+from frictionlab.runner import gathering as thinned
 from frictionlab.runner.saved import read_saved
-from frictionlab.study import parse_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.load import parse_study
+from frictionlab.study.written import yaml_text
 
 pytestmark = deep("seconds of runs")
 

@@ -14,9 +14,8 @@ from frictionlab.compile.call import KernelCall, NotKept
 from frictionlab.methods.base import Answers
 from frictionlab.methods.under_way import UnderWay
 from frictionlab.runner.chunks import Chunk, task_of
-from frictionlab.runner.forecast import Forecast
-from frictionlab.runner.price import Price, prices, solving_seconds
-from frictionlab.study import parse_study
+from frictionlab.runner.price import Forecast, Price, prices, solving_seconds
+from frictionlab.study.load import parse_study
 
 
 class Slow(Fake):
@@ -84,8 +83,8 @@ def test_the_time_left_is_within_a_factor_of_three_from_a_tenth_on(
     """Of two workers with chunks of two kinds, each slowest at first, of which a few points are sampled."""
     now, running = [0.0], dict[int, UnderWay]()
     for clock in ("monotonic", "perf_counter"):
-        monkeypatch.setattr(f"frictionlab.runner.forecast.time.{clock}", lambda: now[0])
-    monkeypatch.setattr("frictionlab.runner.forecast.under_way", running)
+        monkeypatch.setattr(f"frictionlab.runner.price.time.{clock}", lambda: now[0])
+    monkeypatch.setattr("frictionlab.runner.price.under_way", running)
     seconds = {("quick", ""): [0.2] * 5 + [0.05] * 20, ("slow", ""): [3.0] * 5 + [0.5] * 20}
     kinds = [kind for kind in seconds for _ in range(3)][:: -1 if slow_first else 1]
     forecast = Forecast([(kind, 25) for kind in kinds])

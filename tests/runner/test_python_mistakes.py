@@ -17,12 +17,11 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.registry import method_names
-from frictionlab.registry.law_file import read_law_file
-from frictionlab.results.state import NoMeanError
-from frictionlab.study import StudyError, parse_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.runner.state import NoMeanError
+from frictionlab.study.load import parse_study
+from frictionlab.study.registry import method_names, read_law_file
+from frictionlab.study.written import yaml_text
+from frictionlab.values.notes import StudyError, WrongValues
 
 GIVEN: dict[str, Any] = {
     "damping_ratio": 0.1,

@@ -10,8 +10,8 @@ from fake_methods import Fake, breaks_down, faked, is_wrong, register
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab import registry
-from frictionlab.runner import code_digest
+from frictionlab.runner import kept_chunks as code_digest
+from frictionlab.study import registry
 
 pytestmark = deep("seconds of runs")
 
@@ -93,7 +93,7 @@ def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed
 def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from frictionlab.runner import code_digest as home
+    from frictionlab.runner import kept_chunks as home
 
     study = fl.run(STUDY).study
     before = home.code_digest(study)

@@ -9,7 +9,7 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.results.state import SteadyState
+from frictionlab.runner.state import SteadyState
 
 COULOMB = fl.Coulomb(mu=0.4)
 GENTLE = fl.Stribeck(mu_kinetic=0.39, mu_static=0.4)

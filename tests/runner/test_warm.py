@@ -5,12 +5,13 @@ from __future__ import annotations
 import pytest
 
 import frictionlab as fl
-from frictionlab import cli, registry
+from frictionlab import cli
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner import warm as module
 from frictionlab.runner.warm import SCENES, Warmed, _form, forms, warm
+from frictionlab.study import registry
 
 
 @pytest.mark.parametrize("name", registry.law_names())

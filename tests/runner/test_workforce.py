@@ -19,10 +19,10 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.runner import workforce
 from frictionlab.runner.kept_chunks import KeptChunks
-from frictionlab.runner.share import run_share
+from frictionlab.runner.solving import run_share
 from frictionlab.runner.workforce import Workforce
-from frictionlab.study import parse_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.load import parse_study
+from frictionlab.study.written import yaml_text
 
 pytestmark = deep("processes")
 

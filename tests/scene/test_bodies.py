@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import frictionlab as fl
-from frictionlab.least_model.lesser import LesserModel
-from frictionlab.least_model.parts import without_term
+from frictionlab.analysis.needs.motion import LesserModel
+from frictionlab.analysis.needs.parts import without_term
 
 LINE: dict[str, Any] = {
     "damping_ratio": 0.1,

@@ -16,13 +16,14 @@ from strategies import scenes_in_the_plane, scenes_on_the_line, sizes
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
 from frictionlab.charts.figures import FigureData
-from frictionlab.columns import SI
 from frictionlab.laws.base import Dimension, Positive, Record
-from frictionlab.quantities import dimensions
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import Units, scaled_law
-from frictionlab.study import StudyError, parse_study
+from frictionlab.study.load import parse_study
 from frictionlab.theory import friction_free_velocity
+from frictionlab.values.columns import SI
+from frictionlab.values.notes import StudyError
+from frictionlab.values.quantities import dimensions
 
 MU = 0.4
 LAW = fl.Coulomb(mu=MU)
@@ -438,8 +439,8 @@ def test_figures_are_in_si_units_where_the_scene_is() -> None:
 
 
 def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:
-    from frictionlab.columns import word
-    from frictionlab.mistakes.validation import number_paths
+    from frictionlab.values.columns import word
+    from frictionlab.values.validation import number_paths
 
     starts, without_unit = "initial.", ("frequency_ratio", "variation.amplitude", "damping_ratio", ".order")
     for path in number_paths(fl.Dimensional):

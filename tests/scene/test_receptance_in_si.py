@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import StudyError, WrongValues
 from frictionlab.report.equation import equations
 from frictionlab.study.load import load_study
+from frictionlab.values.notes import StudyError, WrongValues
 
 MASS, DAMPING, STIFFNESS = 0.5, 5.0, 5000.0
 SHARED: dict[str, Any] = {

@@ -13,10 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import scenes_in_the_plane, sizes
 
-from frictionlab.mistakes.notes import WrongValues
 from frictionlab.scene.body import in_the_plane, on_the_line, restoring_force
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.scene.waveforms import WAVE_SHAPES
+from frictionlab.values.notes import WrongValues
 
 FREE = {
     "damping_ratio": 0.1,

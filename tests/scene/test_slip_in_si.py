@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.study import parse_study
+from frictionlab.study.load import parse_study
+from frictionlab.values.notes import WrongValues
 
 SLIP = {"displacement_amplitude": "5 um", "frequency": "60 Hz"}
 AMPLITUDE = 5e-6 * 2 * math.pi * 60

@@ -11,7 +11,7 @@ from hypothesis import given
 from strategies import sizes
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import WrongValues
+from frictionlab.values.notes import WrongValues
 
 BODY: dict[str, Any] = {
     "mass": "0.5 kg",

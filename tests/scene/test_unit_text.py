@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import Unfit, WrongValues
-from frictionlab.study import StudyError, parse_study
+from frictionlab.study.load import parse_study
 from frictionlab.study.reader import read_values
 from frictionlab.study.yaml_source import read_text
-from frictionlab.units.text import in_units
+from frictionlab.values.notes import StudyError, Unfit, WrongValues
+from frictionlab.values.units import in_units
 
 NUMBERS: dict[str, Any] = {
     "mass_kg": 0.5,

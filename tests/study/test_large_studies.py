@@ -12,9 +12,10 @@ from profiles import deep
 from pydantic import model_validator
 
 import frictionlab as fl
-from frictionlab import registry
-from frictionlab.study import StudyError, load_study, parse_study, read_back
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study import registry
+from frictionlab.study.load import load_study, parse_study, read_back
+from frictionlab.study.written import yaml_text
+from frictionlab.values.notes import StudyError
 
 SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 1, "drive": {"unbalance": 10, "frequency": 1}}
 

@@ -11,15 +11,17 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab import cli, registry
+from frictionlab import cli
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
-from frictionlab.registry.law_file import read_law_file
-from frictionlab.report import write_report
-from frictionlab.runner.errors import FolderError
+from frictionlab.report.page import write_report
+from frictionlab.runner.files import FolderError
 from frictionlab.runner.saved import read_saved
-from frictionlab.study import StudyError, load_study, read_back
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study import registry
+from frictionlab.study.load import load_study, read_back
+from frictionlab.study.registry import read_law_file
+from frictionlab.study.written import yaml_text
+from frictionlab.values.notes import StudyError
 
 LAW = '''"""A law for tests."""
 

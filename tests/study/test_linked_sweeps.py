@@ -11,12 +11,14 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
-from frictionlab.columns import leading
 from frictionlab.laws.base import SlidingLaw
-from frictionlab.results.table import swept_inputs, whole
-from frictionlab.results.thinned import thinned
-from frictionlab.study import Study, StudyError, load_study, parse_study
+from frictionlab.runner.gathering import thinned
+from frictionlab.runner.table import swept_inputs, whole
 from frictionlab.study.grid import grid_size
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.study.study import Study
+from frictionlab.values.columns import leading
+from frictionlab.values.notes import StudyError
 
 SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
 LAWS: list[dict[str, Any]] = [

@@ -10,7 +10,8 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.laws.base import SlidingLaw
-from frictionlab.study import StudyError, load_study
+from frictionlab.study.load import load_study
+from frictionlab.values.notes import StudyError
 
 SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 LAW = fl.Coulomb(mu=0.4)

@@ -8,8 +8,8 @@ import pytest
 import ruamel.yaml
 
 import frictionlab as fl
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.study import StudyError, parse_study
+from frictionlab.study.load import parse_study
+from frictionlab.values.notes import StudyError, WrongValues
 
 HERE = "scene.dimensional."
 BODY = {

@@ -11,11 +11,14 @@ import pytest
 from profiles import some
 from study_mistakes import EDITS, GOOD, HINTS
 
-from frictionlab import registry
-from frictionlab.columns import OF_SHAPE
 from frictionlab.scene.as_written import without_unit
-from frictionlab.study import Expectation, Study, StudyError, load_study, parse_study
+from frictionlab.study import registry
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.study.parts import Expectation
 from frictionlab.study.schema import schema
+from frictionlab.study.study import Study
+from frictionlab.values.columns import OF_SHAPE
+from frictionlab.values.notes import StudyError
 
 STUDIES = Path(__file__).parents[2] / "studies"
 

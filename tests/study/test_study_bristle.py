@@ -19,19 +19,20 @@ from profiles import some
 from strategies import BRISTLE_LAWS, sizes
 
 import frictionlab as fl
-from frictionlab import registry
 from frictionlab.charts.curves import family_of
-from frictionlab.columns import SCALED, word
+from frictionlab.curves.ends import Shakedown, shakedown_of_body, shakedown_of_slip
+from frictionlab.curves.verdict import UnreadableCurve
 from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.quantities import dimensions
-from frictionlab.registry.records import law_record
-from frictionlab.results.curve_table import curve_table
+from frictionlab.runner.curve_table import curve_table
 from frictionlab.scene.units import Units
-from frictionlab.shape.shakedown import Shakedown, shakedown_of_body, shakedown_of_slip
-from frictionlab.shape.verdict import UnreadableCurve
-from frictionlab.study import StudyError, parse_study
+from frictionlab.study import registry
+from frictionlab.study.load import parse_study
+from frictionlab.study.records import law_record
 from frictionlab.theory import friction_free_velocity, mean_soft_elasto_plastic
+from frictionlab.values.columns import SCALED, word
+from frictionlab.values.notes import StudyError
+from frictionlab.values.quantities import dimensions
 
 Floats = NDArray[np.float64]
 DOCS = Path(__file__).parents[2] / "docs"

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from study_mistakes import GOOD
 
-from frictionlab.printable import one_line, printable
-from frictionlab.study import StudyError, load_study, parse_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.study.written import yaml_text
+from frictionlab.values.notes import StudyError
+from frictionlab.values.printable import one_line, printable
 
 
 def told(path: Path, text: str, overrides: tuple[str, ...] = ()) -> str:

@@ -12,12 +12,13 @@ import pytest
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
 from frictionlab.report.question import scene_sentences
-from frictionlab.results.table import inputs
 from frictionlab.runner.chunks import cuts, task_of
 from frictionlab.runner.kept_chunks import Keys
+from frictionlab.runner.table import inputs
 from frictionlab.scene.waveforms import Form, Term
-from frictionlab.study import Study, load_study, parse_study
-from frictionlab.study.yaml_text import yaml_text
+from frictionlab.study.load import load_study, parse_study
+from frictionlab.study.study import Study
+from frictionlab.study.written import yaml_text
 
 SUM = {"harmonics": [{"order": 1, "amplitude": 1}, {"order": 3, "amplitude": 0.5, "phase": 90}]}
 FORMULA = "sin(theta) + 0.5 sin(3 theta + 90 deg)"

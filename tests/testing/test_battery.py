@@ -21,8 +21,7 @@ from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.testing import CHECKS, LawFailed, check_law
-from frictionlab.testing.check import law_check
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, law_check
 from frictionlab.testing.running import run_check
 from frictionlab.testing.strategies import fullest_laws
 

@@ -13,7 +13,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.scene.scene import Drive, Scene
 from frictionlab.theory import friction_free_velocity
-from frictionlab.theory.equivalent_drive import equivalent_drive
+from frictionlab.theory.one_harmonic import equivalent_drive
 
 LAW = Coulomb(mu=0.4)
 VIBRATION = {"velocity_amplitude": 2.0, "phase": 70.0}

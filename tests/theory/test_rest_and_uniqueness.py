@@ -14,8 +14,15 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.rest import can_hold, resting_range, stays_at_rest
-from frictionlab.theory.uniqueness import falls_slowly, is_convergent, is_unique, largest_normal_load
+from frictionlab.theory.rest import (
+    can_hold,
+    falls_slowly,
+    is_convergent,
+    is_unique,
+    largest_normal_load,
+    resting_range,
+    stays_at_rest,
+)
 
 LAW = Coulomb(mu=0.5)
 PULSATING = {"amplitude": 0.5, "phase": 90.0}  # normal load 2 (1 + .5 cos)

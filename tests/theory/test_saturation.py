@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import frictionlab as fl
-from frictionlab.theory.saturation import SHORT, remaining_share, saturates
+from frictionlab.theory.sliding_stability import SHORT, remaining_share, saturates
 
 SOFT: Any = {"presliding_length": 0.1, "planar": "rotated"}
 

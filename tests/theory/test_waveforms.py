@@ -16,10 +16,7 @@ from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, edges_of, signal_of
 from frictionlab.scene.waveforms import WAVE_SHAPES, Form, Term
-from frictionlab.theory import (
-    friction_free_velocity,
-    mean_prescribed_longitudinal,
-)
+from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudinal
 from frictionlab.theory.linear import LinearOscillator
 from frictionlab.theory.piecewise import piecewise
 from frictionlab.theory.prescribed import mean_direction

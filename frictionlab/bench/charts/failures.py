@@ -20,14 +20,13 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.bench.failures.measure import MapOutcome, MapTruth
-from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD, edges, free_velocities
-from frictionlab.bench.failures.section import FailureResult
+from frictionlab.bench.failure_maps import OF_FRICTION_TO_LOAD, MapOutcome, MapTruth, edges, free_velocities
+from frictionlab.bench.failures import FailureResult
 from frictionlab.charts.maps import cell_edges
-from frictionlab.charts.style import PAGE, blank_figure
+from frictionlab.charts.sheet import PAGE, blank_figure
 from frictionlab.charts.sweeps import is_logarithmic
-from frictionlab.columns import word
-from frictionlab.quantities import Floats
+from frictionlab.values.columns import word
+from frictionlab.values.quantities import Floats
 
 _LEVELS = (1e-16, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1.0)
 """Of errors: a shade between two of them, darker for a smaller error."""

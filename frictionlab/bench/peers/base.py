@@ -11,8 +11,8 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.quantities import Floats, Record
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats, Record
 
 CLOSURE = 1.0
 """Gap of a closed period in tolerances, as the change of velocity that so much mean friction makes in a period."""

@@ -13,11 +13,11 @@ from pydantic import Field
 
 from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
 from frictionlab.bench.peers.equations import start
-from frictionlab.bench.peers.line import LineMotion, MotionState, first_step, means
+from frictionlab.bench.peers.scipy_events import LineMotion, MotionState, first_step, means
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats
 
 
 class Heyoka(Peer):

@@ -10,16 +10,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
-from frictionlab.bench.peers.equations import start
-from frictionlab.bench.peers.scipy_steps import LEAST_RTOL
+from frictionlab.bench.peers.equations import LEAST_RTOL, start
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats
 
 compiled_resistance = by_dimension(bristle_on_the_line, bristle_in_the_plane)
 MOST_LSODA_STEPS = 10_000_000

@@ -9,13 +9,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.peers.equations import Creeping, Equations, OnBristles, Sliding
+from frictionlab.bench.peers.equations import (
+    LEAST_RTOL,
+    Creeping,
+    Equations,
+    OnBristles,
+    Sliding,
+    by_solve_ivp,
+)
 from frictionlab.bench.peers.heyoka_taylor import plane_system
-from frictionlab.bench.peers.scipy_steps import LEAST_RTOL, by_solve_ivp
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import Floats
 
 SOLVE_IVP_METHODS = "RK23", "RK45", "DOP853", "Radau", "LSODA"
 MOST_CALLS_OF_A_PERIOD = 200_000

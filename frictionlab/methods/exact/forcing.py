@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.varying import Varying, Waves
+from frictionlab.values.quantities import Floats
 
 # Columns of the waves: sine and cosine parts of the load, of the response to it, of what the varying normal load adds
 # to the limit of friction, of the response to that, and of the belt's velocity.

@@ -23,7 +23,7 @@ from frictionlab.methods.exact.oscillator import (
     response_at,
     with_piece,
 )
-from frictionlab.quantities import EPSILON
+from frictionlab.values.quantities import EPSILON
 
 TINY = 1e-300
 STICK = 0.0

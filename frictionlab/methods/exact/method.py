@@ -15,19 +15,19 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Multipliers, Status, beyond_linear
 from frictionlab.methods.exact import continuation as curve
+from frictionlab.methods.exact.continuation import make_orbits
 from frictionlab.methods.exact.forcing import forcing_of, resonates
-from frictionlab.methods.exact.orbit import make_orbits
 from frictionlab.methods.exact.oscillator import RESONANT
 from frictionlab.methods.prescribed.bristle import along_one_line
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.shooting.method import suggest_shooting
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbits
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbits
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory import friction_free_velocity
+from frictionlab.values.quantities import Floats
 
 SALTATION = 1e-8
 """Error of multipliers carried through events, absolute or of those above one: rounding, much more than is seen."""
@@ -121,7 +121,7 @@ class Exact(Method):
         curve_of = _Curve if scenes[0].is_harmonic else _VaryingCurve
         answers = curve_of(scenes, law.sliding_friction(1.0), tolerance).answers()
         if self.certify:
-            from frictionlab.methods.exact.proof.certify import certified  # python-flint need not be there
+            from frictionlab.methods.exact.proof.prove import certified  # python-flint need not be there
 
             answers = certified(answers, scenes, law)
         return answers

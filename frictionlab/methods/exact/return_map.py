@@ -13,13 +13,7 @@ from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_variation
-from frictionlab.methods.exact.legs import (
-    STICK,
-    cross_corner,
-    slip_leg,
-    starting_mode,
-    stick_leg,
-)
+from frictionlab.methods.exact.legs import STICK, cross_corner, slip_leg, starting_mode, stick_leg
 from frictionlab.methods.exact.oscillator import (
     impulse_of_limit,
     impulse_of_load,
@@ -28,7 +22,7 @@ from frictionlab.methods.exact.oscillator import (
     response_at,
     with_belt_speed,
 )
-from frictionlab.quantities import EPSILON
+from frictionlab.values.quantities import EPSILON
 
 MOST_LEGS = 1_000_000
 """Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""

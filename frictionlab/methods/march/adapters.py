@@ -20,8 +20,8 @@ from frictionlab.compile.dispatch import (
     length,
 )
 from frictionlab.compile.stack import count_of, room
-from frictionlab.dynamics import smoothing
-from frictionlab.dynamics.contact import (
+from frictionlab.motion import contact as smoothing
+from frictionlab.motion.contact import (
     advance_at_share,
     advance_bristle,
     friction_of,
@@ -30,7 +30,7 @@ from frictionlab.dynamics.contact import (
     resistance,
     resistance_at_share,
 )
-from frictionlab.dynamics.motion import (
+from frictionlab.motion.equation import (
     START,
     acceleration,
     acceleration_under,
@@ -43,24 +43,24 @@ from frictionlab.dynamics.motion import (
     slip,
     slopes_at,
 )
-from frictionlab.dynamics.relaxing import elements_of, with_force
-from frictionlab.dynamics.step_size import growth_of
-from frictionlab.methods.periodic.maps.memory_state import pulled
-from frictionlab.numerics.steppers import dop853, exponential, rk4
-from frictionlab.numerics.steppers.exponential import exponential_step
-from frictionlab.numerics.steppers.moreau import moreau_step
-from frictionlab.numerics.steppers.rk4 import rk4_step
-from frictionlab.numerics.steppers.sdirk2 import sdirk2_step
-from frictionlab.numerics.steppers.step import (
+from frictionlab.motion.maps.memory_state import pulled
+from frictionlab.motion.orbit.recorder import panel_writer
+from frictionlab.motion.relaxing import elements_of, with_force
+from frictionlab.motion.steppers import dop853, exponential, rk4
+from frictionlab.motion.steppers.exponential import exponential_step
+from frictionlab.motion.steppers.moreau import moreau_step
+from frictionlab.motion.steppers.rk4 import rk4_step
+from frictionlab.motion.steppers.sdirk2 import sdirk2_step
+from frictionlab.motion.steppers.step import (
     LAST,
     MIDDLE,
     StepEnd,
     StepStart,
     belt_at,
+    growth_of,
     load_at,
     normal_load_at,
 )
-from frictionlab.orbit.recorder import panel_writer
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -106,7 +106,7 @@ class MarchProblem(NamedTuple):
     body: BodyNumbers
     belt_speed: float
     stepper: Any
-    grid: Any  # numerics/steppers/step.py
+    grid: Any  # motion/steppers/step.py
     memory: Any
     ahead: Any
 

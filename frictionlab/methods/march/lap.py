@@ -15,11 +15,11 @@ import numpy as np
 from frictionlab.compile.decorators import embedded, inner
 from frictionlab.compile.dispatch import by_variation, length
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import in_piece, instant_at, piece_ends, pieces_of, slip
-from frictionlab.dynamics.relaxing import elements_of
 from frictionlab.methods.march.adapters import MarchProblem, advance, first_force, note_step
-from frictionlab.numerics.steppers.step import StepEnd, StepStart
-from frictionlab.orbit.recorder import Track
+from frictionlab.motion.equation import in_piece, instant_at, piece_ends, pieces_of, slip
+from frictionlab.motion.orbit.recorder import Track
+from frictionlab.motion.relaxing import elements_of
+from frictionlab.motion.steppers.step import StepEnd, StepStart
 
 NOTHING = np.zeros(1)
 """Of a memory that is none."""

@@ -10,7 +10,17 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law, by_variation
 from frictionlab.compile.stack import items_of, room
-from frictionlab.dynamics.motion import (
+from frictionlab.methods.march.adapters import MarchProblem
+from frictionlab.methods.march.lap import (
+    NOTHING,
+    Lap,
+    MarchSettings,
+    SlipTrace,
+    first_trace,
+    march_lap,
+    steps_in,
+)
+from frictionlab.motion.equation import (
     belt_advance,
     belt_velocity,
     in_piece,
@@ -22,20 +32,9 @@ from frictionlab.dynamics.motion import (
     pieces_of,
     runs_away,
 )
-from frictionlab.dynamics.relaxing import hardest
-from frictionlab.dynamics.step_size import squared
-from frictionlab.methods.march.adapters import MarchProblem
-from frictionlab.methods.march.lap import (
-    NOTHING,
-    Lap,
-    MarchSettings,
-    SlipTrace,
-    first_trace,
-    march_lap,
-    steps_in,
-)
-from frictionlab.numerics.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart
-from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.motion.orbit.recorder import Track, track_of
+from frictionlab.motion.relaxing import hardest
+from frictionlab.motion.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart, squared
 from frictionlab.scene.body import BodyNumbers
 
 CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST, TOO_STIFF = range(8)

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip, piece_at
-from frictionlab.orbit.record import Orbit
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.varying import varying_of

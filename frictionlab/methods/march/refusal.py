@@ -10,10 +10,9 @@ from typing import Any
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import about_rest, beyond_linear
 from frictionlab.methods.march.error import FEWEST_LAPS, WORK
-from frictionlab.methods.march.stability import fewest_steps
-from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, steppers_of
+from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, fewest_steps, steppers_of
 from frictionlab.methods.periodic.problem import along_the_belt
-from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.shooting.method import suggest_shooting
 from frictionlab.scene.parts import BENDING, REMEMBERING
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest

@@ -10,7 +10,6 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
-from frictionlab.dynamics.motion import mean_friction, quickest_of, span
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.lap import MarchSettings
 from frictionlab.methods.march.laps import (
@@ -23,7 +22,10 @@ from frictionlab.methods.march.laps import (
     march_laps,
 )
 from frictionlab.methods.march.prescribed import unmoved_mass, unseen_share
-from frictionlab.methods.march.stability import (
+from frictionlab.methods.march.steppers import (
+    STEPPERS,
+    Resolution,
+    StepperName,
     elastic_stiffness,
     fastest_slip,
     fewest_steps,
@@ -33,15 +35,15 @@ from frictionlab.methods.march.stability import (
     shares_of_load,
     steps_through_rest,
 )
-from frictionlab.methods.march.steppers import STEPPERS, Resolution, StepperName
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.under_way import once
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.motion.equation import mean_friction, quickest_of, span
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.springs import mass_of
+from frictionlab.values.quantities import Floats
 
 UNMOVED = 2.0**100
 """Of friction in the norm of energy, where it moves no mass: rounding of a mass at rest is nothing beside it."""

@@ -1,15 +1,26 @@
-"""All that march knows of a stepper, but for its step: what it suits, what a study may give it, order and limits."""
+"""All that march knows of a stepper, but for its step: what it suits, what a study may give it, order and limits.
+
+How short the steps of an explicit stepper must be, from what the law says of its memory.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
-from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
+import numpy as np
+
+from frictionlab.compile.stack import count_of
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.adapters import Exponential, Moreau, Rk4, Sdirk2, Smoothed, Stepper
-from frictionlab.numerics.steppers import exponential, rk4
+from frictionlab.motion.contact import ARCTAN, SQUARE_ROOT, TANH, friction_of, rate_of
+from frictionlab.motion.steppers import exponential, rk4
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.linear import velocity_scale
+from frictionlab.theory.springs import mass_of
+from frictionlab.values.quantities import Floats
 
 StepperName = Literal["moreau", "rk4", "smoothed", "exponential", "sdirk2"]
 SMOOTHINGS = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
@@ -98,3 +109,187 @@ STEPPERS: dict[StepperName, StepperFacts] = {
 def steppers_of(kind: str) -> list[StepperName]:
     """Those that step a law with this kind of memory; none for a kind that march does not know."""
     return [name for name, facts in STEPPERS.items() if kind in facts.kinds]
+
+
+MARGIN = 1.02
+"""Steps used over the steps that a stability limit requires."""
+AGE = 1.0
+"""Largest step times decay rate of a scalar, so that no stage of a step becomes negative."""
+SLOW = np.geomspace(1e-30, 1.0, 241)
+"""Speeds at which friction near rest is evaluated, over that of the motion."""
+
+
+# --- what changes in time -----------------------------------------------------------------------------------------
+
+
+def shares_of_load(scene: Scene) -> tuple[float, float]:
+    """The least and the largest normal load, over its mean."""
+    if scene.normal_load_variation is None:
+        return 1.0, 1.0
+    signals = scene.signals()
+    assert scene.normal_load is not None
+    low, high = signals.normal_load.extremes(signals.period)
+    return 1.0 + low / scene.normal_load, 1.0 + high / scene.normal_load
+
+
+def lightest_contact(scene: Scene) -> float:
+    """The least share of the mean load under which bristles are bent as the law says it; 1 where they follow it."""
+    return shares_of_load(scene)[0] if scene.constant_contact else 1.0
+
+
+# --- the motion ---------------------------------------------------------------------------------------------------
+
+
+def expected_slip(scene: Scene) -> float:
+    """The largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
+    along = velocity_scale(scene) + abs(scene.belt_speed)
+    if scene.degrees_of_freedom == 0:
+        motion = scene.motion()
+        if motion.varying:
+            return abs(scene.belt_speed) + float(motion.varying.belt_swing)
+        return math.hypot(along, abs(motion.transverse_velocity))
+    mass, start = scene.mass(), scene.start if scene.undriven else scene.initial
+    dynamic = complex(mass.transverse_stiffness - mass.frequency**2, mass.transverse_damping * mass.frequency)
+    across = abs(mass.transverse_force) * mass.frequency
+    speed = math.hypot(along, across / abs(dynamic) if dynamic else (math.inf if across else 0.0))
+    speed = speed if math.isfinite(speed) else abs(scene.belt_speed)
+    speed = speed + float(mass.varying.belt_swing) if mass.varying else speed
+    if start is not None:
+        speed = max(speed, math.hypot(start.velocity - scene.belt_speed, start.velocity2))
+    return speed
+
+
+def usual_slip(scene: Scene) -> float:
+    """A slip speed of the motion, above zero [scene velocity]."""
+    return expected_slip(scene) or 1.0
+
+
+# --- the contact --------------------------------------------------------------------------------------------------
+
+
+def friction_falls(law: FrictionLaw) -> bool:
+    """Whether steady sliding friction decreases with speed anywhere."""
+    speeds = np.geomspace(1e-9, 1e9, 721)
+    friction = [law.sliding_friction(speed) for speed in [0.0, *speeds.tolist()]]
+    return bool((np.diff(friction) < -1e-12 * friction[0]).any())
+
+
+def steady_memory(law: Any, speed: float) -> Floats:
+    """What a law of several numbers remembers in steady sliding."""
+    return np.array([law.steady(speed, k) for k in range(count_of(law))])
+
+
+def first_memory(scene: Scene, law: FrictionLaw) -> Floats:
+    """The memory at the start: no deflection; scalars as in steady sliding at the speed of the motion."""
+    if law.memory_kind == "scalars":
+        return steady_memory(law, usual_slip(scene))
+    return np.zeros(max(1, count_of(law)))
+
+
+def elastic_stiffness(law: FrictionLaw) -> float:
+    """Friction coefficient per slip from rest, while the contact is elastic [1/scene length]; 0 where it is not."""
+    if law.memory_kind in ("none", "scalars"):
+        return 0.0
+    depth = law.presliding()
+    depth = depth if 0.0 < depth < math.inf else 1e-6
+    n = count_of(law)
+    return float(friction_of(law, np.full(n, depth), np.zeros(n), 0.0)) / depth
+
+
+def friction_at_once(law: FrictionLaw, speed: float, memory: Floats) -> float:
+    """Friction at a speed with this memory."""
+    rates = np.array([rate_of(law, memory, k, speed) for k in range(count_of(law))])
+    return float(friction_of(law, memory, rates, speed))
+
+
+def contact_damping(scene: Scene, law: FrictionLaw) -> float:
+    """Slope of friction over slip velocity; for deflections, friction from rest over the speed."""
+    memory = first_memory(scene, law)
+    speed = 1.0 if law.memory_kind == "bristle" else usual_slip(scene)
+    if law.memory_kind != "scalars":
+        return friction_at_once(law, speed, memory) / speed
+    change = friction_at_once(law, 1.01 * speed, memory) - friction_at_once(law, speed, memory)
+    return max(0.0, change / (0.01 * speed))
+
+
+def memory_stiffness(scene: Scene, law: FrictionLaw) -> Floats:
+    """The stiffness of each memory in the energy norm; of a scalar, from its effect on friction."""
+    if law.memory_kind in ("none", "bristle"):
+        return np.array([scene.mass().normal_load * elastic_stiffness(law)])
+    speed, load = usual_slip(scene), scene.mass().normal_load
+    most, n = law.sliding_friction(speed), count_of(law)
+    steady, still = steady_memory(law, speed), np.zeros(n)
+    size = np.where(steady == 0.0, 1.0, np.abs(steady))
+    change = [
+        friction_of(law, steady + shift, still, speed) - friction_of(law, steady - shift, still, speed)
+        for shift in 1e-3 * size * np.eye(n)
+    ]
+    slope = np.maximum(np.abs(change) / (2e-3 * size), 1e-6 * most / size)
+    if law.memory_kind == "deflections":
+        return np.asarray(load * slope)
+    return np.asarray((load * slope / scene.mass().frequency) ** 2)
+
+
+# --- steps --------------------------------------------------------------------------------------------------------
+
+
+def stable_decay(law: FrictionLaw, facts: StepperFacts) -> float:
+    """Largest stable step of a stepper times decay rate of this law's memory."""
+    return min(AGE, facts.decay) if law.memory_kind == "scalars" else facts.decay
+
+
+def fastest_slip(law: FrictionLaw, facts: StepperFacts, h: float) -> float:
+    """The slip speed at which the memory decays at the largest rate for which steps of length h are stable."""
+    low, high, decay = 0.0, 1e12, stable_decay(law, facts)
+    if law.memory_kind == "none":
+        return 1e300
+    if h * law.largest_rate(high) <= decay:
+        return high
+    for _ in range(200):
+        middle = math.sqrt(low * high) if low > 0.0 else 1e-12 if high > 1e-12 else 0.5 * high
+        if h * law.largest_rate(middle) <= decay:
+            low = middle
+        else:
+            high = middle
+        if high - low <= 1e-9 * high:
+            break
+    return low
+
+
+def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
+    """Steps per period that a stepper needs; 1 where any number is stable, 0 where the law names no rate.
+
+    For slip as fast as that of the friction-free motion on this belt, and for a mass held by its contact.
+    """
+    if law.memory_kind == "none" or math.isinf(facts.held):
+        return 1
+    lap = 2.0 * math.pi / scene.frequency
+    held = 0.0 if scene.degrees_of_freedom == 0 else quickest_when_held(scene, law)
+    if not facts.limited_by_rates:
+        return math.ceil(MARGIN * lap * held / facts.held)
+    rate = law.largest_rate(expected_slip(scene)) / lightest_contact(scene)
+    if not math.isfinite(rate):
+        return 0
+    return math.ceil(MARGIN * lap * max(held / facts.held, rate / stable_decay(law, facts)))
+
+
+def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
+    """The largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
+    mass = mass_of(scene)
+    heaviest = mass.normal_load * shares_of_load(scene)[1]
+    hardest = mass.relaxing.hardest if mass.relaxing else 0.0
+    stiffness = max(mass.stiffness + hardest, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)
+    damping = max(mass.damping, mass.transverse_damping) + heaviest * contact_damping(scene, law)
+    return max(math.sqrt(stiffness), damping)
+
+
+def steps_through_rest(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> float:
+    """Steps per period that a stepper needs where slip comes to rest: friction may be steep there. 0 for laws that
+    say how their one deflection slows down, and for those without memory.
+    """
+    if law.memory_kind in ("none", "bristle"):
+        return 0.0
+    speeds, memory = usual_slip(scene) * SLOW, first_memory(scene, law)
+    steepest = max(friction_at_once(law, float(speed), memory) / float(speed) for speed in speeds)
+    heaviest = scene.mass().normal_load * shares_of_load(scene)[1]
+    return 2.0 * math.pi / scene.frequency * heaviest * steepest / facts.decay

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import mean_friction
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
 from frictionlab.methods.periodic.setting import (
     Maps,
@@ -23,7 +22,8 @@ from frictionlab.methods.periodic.setting import (
     write_state,
 )
 from frictionlab.methods.periodic.steady_sliding import NEAR
-from frictionlab.numerics.linalg import copy, multiply, norm, radius_bound, subtract
+from frictionlab.motion.equation import mean_friction
+from frictionlab.motion.linalg import copy, multiply, norm, radius_bound, subtract
 
 MOST_PERIODS = 5000
 PATIENCE = 300

@@ -1,4 +1,9 @@
-"""Kernels of shooting: the orbits of one curve, closed by continuation in belt speed, and what is read from them."""
+"""Kernels of shooting: the orbits of one curve, closed by continuation in belt speed, and what is read from them.
+
+What is known of the closed orbits of a curve: a row of numbers for each, under names.
+
+Kernels fill a table: an array each would make them compile for minutes. Python reads the columns of it.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +11,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import mean_friction
 from frictionlab.methods.periodic.attraction import reached
-from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, ClosedOrbits, write_orbit
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import monodromy
 from frictionlab.methods.periodic.setting import (
@@ -24,8 +28,46 @@ from frictionlab.methods.periodic.setting import (
     write_sliding_state,
 )
 from frictionlab.methods.periodic.steady_sliding import NEAR
-from frictionlab.numerics.linalg import copy, norm
-from frictionlab.orbit.recorder import Track, grown, track_of
+from frictionlab.motion.equation import mean_friction
+from frictionlab.motion.linalg import copy, norm
+from frictionlab.motion.orbit.recorder import Track, grown, track_of
+from frictionlab.values.quantities import Floats
+
+MEAN, ACROSS, ERROR, MAPS, STUCK, CLOSEST, COLUMNS = range(7)
+
+
+class ClosedOrbits(NamedTuple):
+    """Of each orbit [n] its mean friction, along the belt and across, the error of that, the maps it took, the share
+    of the period at rest and the slowest slip.
+
+    maps: 0 in closed form; negative where no orbit was found in so many. NaN all where none was looked for.
+    """
+
+    mean: Floats
+    across: Floats
+    error: Floats
+    maps: Floats
+    stuck: Floats
+    closest: Floats
+
+    @classmethod
+    def of(cls, table: Any) -> ClosedOrbits:
+        """Those of a table [n, COLUMNS]."""
+        return cls(*np.asarray(table).T)
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """Whether each is known."""
+        return np.asarray(self.maps >= 0.0)
+
+
+@inner
+def write_orbit(row: Any, mean: Any, error: float, maps: float, rests: Any) -> None:
+    """Fill the row of an orbit; rests: the share of the period at rest, and the slowest slip."""
+    row[MEAN], row[ACROSS] = mean.real, mean.imag
+    row[ERROR], row[MAPS] = error, maps
+    row[STUCK], row[CLOSEST] = rests
+
 
 MOST_KNOWN = 6
 

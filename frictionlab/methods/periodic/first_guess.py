@@ -9,10 +9,9 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_relaxing
-from frictionlab.dynamics.motion import belt_swing, equilibrium, free_cosine, free_sine, span
-from frictionlab.dynamics.relaxing import elements_of
-from frictionlab.numerics.linalg import add_product, invert
-from frictionlab.numerics.vectors import dimension
+from frictionlab.motion.equation import belt_swing, equilibrium, free_cosine, free_sine, span
+from frictionlab.motion.linalg import add_product, dimension, invert
+from frictionlab.motion.relaxing import elements_of
 from frictionlab.scene.body import BodyNumbers
 
 

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.methods.periodic.maps.pace import MOST_KEPT, pace_of
 from frictionlab.methods.periodic.monodromy import PacedMap, inverse_of, monodromy_of, newton_inverse
 from frictionlab.methods.periodic.setting import (
     Scales,
@@ -26,7 +25,8 @@ from frictionlab.methods.periodic.setting import (
     scales_of,
     spans_at_rest,
 )
-from frictionlab.numerics.linalg import copy, multiply, norm, subtract
+from frictionlab.motion.linalg import copy, multiply, norm, subtract
+from frictionlab.motion.maps.case import MOST_KEPT, pace_of
 
 MOST_MAPS = 600
 MUCH_WORK = 500_000

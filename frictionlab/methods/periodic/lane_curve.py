@@ -13,8 +13,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.lane_arrays import room_for
-from frictionlab.dynamics.motion import mean_friction, span
-from frictionlab.methods.periodic.closed_orbits import COLUMNS, ClosedOrbits, write_orbit
+from frictionlab.methods.periodic.continuation import COLUMNS, ClosedOrbits, write_orbit
 from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
 from frictionlab.methods.periodic.fixed_point import (
     Goal,
@@ -26,7 +25,8 @@ from frictionlab.methods.periodic.fixed_point import (
 )
 from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
 from frictionlab.methods.periodic.setting import scales_on
-from frictionlab.numerics.linalg import copy, multiply, norm
+from frictionlab.motion.equation import mean_friction, span
+from frictionlab.motion.linalg import copy, multiply, norm
 from frictionlab.scene.body import BodyNumbers
 
 MOST_LANE_MAPS = 12

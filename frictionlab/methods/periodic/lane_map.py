@@ -13,12 +13,12 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.interpret import over_lanes
 from frictionlab.compile.lane_arrays import any_lane, least_of_eight, read_lanes, select, write_lanes
-from frictionlab.dynamics.events import dips
-from frictionlab.dynamics.motion import START, Flow, normal_load, rates, span, turned
-from frictionlab.dynamics.step_size import growth_of, longest_step
-from frictionlab.methods.periodic.maps.sliding import Node, near_rest, node_at, step, step_towards_rest
 from frictionlab.methods.periodic.period_map import planar_coordinates, unpack
-from frictionlab.numerics.steppers.dop853 import State
+from frictionlab.motion.equation import START, Flow, normal_load, rates, span, turned
+from frictionlab.motion.events import dips
+from frictionlab.motion.maps.sliding import Node, near_rest, node_at, step, step_towards_rest
+from frictionlab.motion.steppers.dop853 import State
+from frictionlab.motion.steppers.step import growth_of, longest_step
 from frictionlab.scene.body import BodyNumbers
 
 MOST_STEPS_IN_LANES = 3_000

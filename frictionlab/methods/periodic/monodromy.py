@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import mean_friction
-from frictionlab.methods.periodic.maps.pace import MOST_KEPT, Pace, pace_of
 from frictionlab.methods.periodic.setting import (
     Setting,
     SpanImage,
@@ -17,7 +15,9 @@ from frictionlab.methods.periodic.setting import (
     repeated_map,
     scales_of,
 )
-from frictionlab.numerics.linalg import invert, norm
+from frictionlab.motion.equation import mean_friction
+from frictionlab.motion.linalg import invert, norm
+from frictionlab.motion.maps.case import MOST_KEPT, Pace, pace_of
 
 OF_LOGARITHM = 1e-3
 """The largest shift of the logarithm of a scalar."""

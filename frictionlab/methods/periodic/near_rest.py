@@ -15,13 +15,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import belt_path, reference_velocity, span, swing_of
-from frictionlab.methods.periodic.case import Case, case_of
-from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, write_orbit
-from frictionlab.methods.periodic.continuation import Curve, Wanted
+from frictionlab.methods.periodic.continuation import COLUMNS, MAPS, Curve, Wanted, write_orbit
 from frictionlab.methods.periodic.first_guess import first_guess
 from frictionlab.methods.periodic.fixed_point import Goal, stated_error
-from frictionlab.methods.periodic.maps.polar import (
+from frictionlab.methods.periodic.period_map import pack, unpack
+from frictionlab.methods.periodic.plateau import plateau
+from frictionlab.motion.equation import belt_path, reference_velocity, span, swing_of
+from frictionlab.motion.linalg import copy, eliminate, multiply, norm
+from frictionlab.motion.maps.case import Case, case_of
+from frictionlab.motion.maps.polar import (
     FIRST_ACCURACY,
     LONGEST,
     MIDDLE,
@@ -35,12 +37,9 @@ from frictionlab.methods.periodic.maps.polar import (
     root_across,
     root_along,
 )
-from frictionlab.methods.periodic.maps.polar_step import DIRECTIONS, SlipPlace
-from frictionlab.methods.periodic.maps.stick import periods_at_rest
-from frictionlab.methods.periodic.period_map import pack, unpack
-from frictionlab.methods.periodic.plateau import plateau
-from frictionlab.numerics.linalg import copy, eliminate, multiply, norm
-from frictionlab.orbit.recorder import Track, grown, track_of
+from frictionlab.motion.maps.polar_step import DIRECTIONS, SlipPlace
+from frictionlab.motion.maps.stick import periods_at_rest
+from frictionlab.motion.orbit.recorder import Track, grown, track_of
 from frictionlab.scene.body import BodyNumbers
 
 MOST_POLAR_MAPS = 60

@@ -3,27 +3,25 @@
 A state is a vector in the norm of energy: sqrt(stiffness)*y and u along x1, then along x2, then what the law
 remembers: a deflection times sqrt(normal_load*stiffness). In it no two orbits of a monotone law without memory move
 apart (Leine & van de Wouw, 2008), which turns a distance of states into a bound on the mean friction.
+
+The kinds of period maps, by what a law remembers: how fine each is, and what is said of it.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing, by_scalars
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.relaxing import (
-    elements_of,
-    energy_unit,
-    in_one_number,
-    read_forces,
-    reference_force,
-    write_forces,
-)
-from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
-from frictionlab.methods.periodic.maps.memory_state import (
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.words import ModelWord
+from frictionlab.motion.linalg import dimension
+from frictionlab.motion.maps.case import Case, Stepping
+from frictionlab.motion.maps.memory import coarsest, memory_map
+from frictionlab.motion.maps.memory_state import (
     coordinates,
     cut_back,
     measure_scales,
@@ -31,13 +29,53 @@ from frictionlab.methods.periodic.maps.memory_state import (
     remember_sliding,
     unpack_memory,
 )
-from frictionlab.methods.periodic.maps.pace import Stepping
-from frictionlab.methods.periodic.maps.path import path_map
-from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
-from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
-from frictionlab.methods.periodic.maps.stick import periods_at_rest
-from frictionlab.numerics.vectors import dimension
+from frictionlab.motion.maps.path import path_map
+from frictionlab.motion.maps.rates import MEMORY, contact_kind, workspace
+from frictionlab.motion.maps.sliding import Mapped, sliding_map
+from frictionlab.motion.maps.stick import periods_at_rest
+from frictionlab.motion.relaxing import (
+    elements_of,
+    energy_unit,
+    in_one_number,
+    read_forces,
+    reference_force,
+    write_forces,
+)
 from frictionlab.scene.body import BodyNumbers
+
+
+class MapKind(NamedTuple):
+    """What is known of a kind of map.
+
+    said: of how it is computed, in ``model``. rough: accuracy of the maps that follow a transient: with memory they
+    are of lower order. finest: tolerance on the mean of maps that are differentiated; noise: what steps chosen
+    otherwise change in them, relative to the size of a state.
+    """
+
+    said: str
+    rough: float
+    finest: float = 1e-10
+    noise: float = 2e-12
+
+
+_OF_MEMORY = MapKind(ModelWord.WITH_MEMORY, rough=1e-7)
+MAP_KINDS = {
+    "none": MapKind("", 1e-9, finest=1e-12, noise=1e-14),
+    "exact path": MapKind(ModelWord.SLIP_PATH, 1e-6, finest=1e-12, noise=1e-14),
+    "bristle": MapKind(ModelWord.WITH_BRISTLE, rough=1e-6),
+    "deflections": _OF_MEMORY,
+    "scalars": _OF_MEMORY,
+}
+"""By the kind of memory, and that of a bristle whose deflection the slip path tells."""
+
+
+def map_kind(law: FrictionLaw, pathless: bool) -> str:
+    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory.
+
+    pathless: in the plane, or on a body that remembers.
+    """
+    exact = not pathless and isinstance(law, BristleLaw) and law.exact_path()
+    return "exact path" if exact else law.memory_kind
 
 
 def _pack_line(body: BodyNumbers, state: Any, y: float, u: float) -> None:

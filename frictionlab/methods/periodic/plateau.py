@@ -10,8 +10,8 @@ import math
 from typing import NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import START, belt_path, belt_velocity, instant_at, load, normal_load, span
-from frictionlab.methods.periodic.case import Case
+from frictionlab.motion.equation import START, belt_path, belt_velocity, instant_at, load, normal_load, span
+from frictionlab.motion.maps.case import Case
 
 LOADS = 512
 GOLDEN_SHARE = 0.5 * (math.sqrt(5.0) - 1.0)

@@ -11,8 +11,7 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
-from frictionlab.compile.law_lanes import takes_lanes
-from frictionlab.dynamics.motion import runs_away, swing_of
+from frictionlab.compile.lane_arrays import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
     Follow,
@@ -36,30 +35,23 @@ from frictionlab.methods.periodic.continuation import (
 )
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
-from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
-from frictionlab.methods.periodic.lane_record import record_in_lanes
-from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
+from frictionlab.methods.periodic.lane_record import differentiate_in_lanes, record_in_lanes
 from frictionlab.methods.periodic.near_rest import answer_near_rest
-from frictionlab.methods.periodic.period_map import unpack, whole_size_of
+from frictionlab.methods.periodic.period_map import MAP_KINDS, map_kind, unpack, whole_size_of
 from frictionlab.methods.periodic.setting import held_maps
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.methods.under_way import once
-from frictionlab.orbit.panels import WEIGHTS
-from frictionlab.orbit.record import Orbits
-from frictionlab.orbit.recorder import Track, track_of
-from frictionlab.quantities import Floats
+from frictionlab.motion.equation import runs_away, swing_of
+from frictionlab.motion.orbit.record import Orbits
+from frictionlab.motion.orbit.recorder import WEIGHTS, Track, track_of
 from frictionlab.scene.body import BodyNumbers, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
-from frictionlab.theory.saturation import slides_saturated
+from frictionlab.theory.rest import falls_slower_than_dashpots, falls_slowly, is_convergent, resonates_once
+from frictionlab.theory.sliding_stability import slides_saturated
 from frictionlab.theory.springs import BEST, mass_of
-from frictionlab.theory.uniqueness import (
-    falls_slower_than_dashpots,
-    falls_slowly,
-    is_convergent,
-    resonates_once,
-)
+from frictionlab.values.quantities import Floats
 
 
 def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:

@@ -26,17 +26,13 @@ from frictionlab.compile.call import Held
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.interpret import interpreted
-from frictionlab.dynamics.motion import bare, belt_advance, changed, span, swing_of
-from frictionlab.dynamics.relaxing import lasting
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
-from frictionlab.methods.periodic.map_kinds import map_kind
-from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keeping, noting, pace_of, repeating
 from frictionlab.methods.periodic.period_map import (
     coarsest_of,
     grain_of,
     image_by_path,
+    map_kind,
     paced_image,
     rest_of,
     size_of,
@@ -46,8 +42,11 @@ from frictionlab.methods.periodic.period_map import (
     whole_size_of,
 )
 from frictionlab.methods.periodic.steady_sliding import ends_sliding, write_sliding
-from frictionlab.numerics.vectors import dimension
-from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.motion.equation import bare, belt_advance, changed, span, swing_of
+from frictionlab.motion.linalg import dimension
+from frictionlab.motion.maps.case import Pace, Stepping, case_of, keeping, noting, pace_of, repeating
+from frictionlab.motion.orbit.recorder import Track, track_of
+from frictionlab.motion.relaxing import lasting
 from frictionlab.scene.body import BodyNumbers
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.quantities import Floats
+from frictionlab.values.quantities import Floats
 
 _SHIFT = 1e-5
 """Of the size of a state."""
@@ -62,7 +62,7 @@ def sharpened(problem: PeriodicProblem, motions: Sequence[ClosedMotion]) -> list
     # the two parts of a complex direction, each ahead and behind
     ways = np.array([[each.right.real, each.right.imag] for each in directions])
     sizes = np.linalg.norm(ways, axis=2)
-    shifts = np.array([_shift(problem, each) for each in motions])[:, None] / np.where(
+    shifts = np.array([_shift_along(problem, each) for each in motions])[:, None] / np.where(
         sizes > 0.0, sizes, 1.0
     )
     asked = [(i, k, side) for i, k in np.argwhere(sizes > 0.0).tolist() for side in (1.0, -1.0)]
@@ -100,7 +100,7 @@ def _judged(direction: _Direction, moved: NDArray[np.complex128]) -> Multiplier:
     return Multiplier(fine, _SAFETY * change + _LEAST)
 
 
-def _shift(problem: PeriodicProblem, motion: ClosedMotion) -> float:
+def _shift_along(problem: PeriodicProblem, motion: ClosedMotion) -> float:
     """Below the way the belt moves in a period, on which the pattern of events hangs."""
     usual = _SHIFT * (1.0 + float(np.linalg.norm(motion.state)))
     way = abs(motion.belt_speed) * 2.0 * math.pi / problem.mass.frequency

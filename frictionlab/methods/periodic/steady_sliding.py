@@ -15,12 +15,12 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
-from frictionlab.dynamics.motion import equilibrium, free_cosine, free_sine, swing_of
-from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.memory_state import measure_scales, unpack_memory
-from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.period_map import deviate_evenly, start_of, unpack
-from frictionlab.numerics.linalg import norm, subtract
+from frictionlab.motion.equation import equilibrium, free_cosine, free_sine, swing_of
+from frictionlab.motion.linalg import norm, subtract
+from frictionlab.motion.maps.case import Case
+from frictionlab.motion.maps.memory_state import measure_scales, unpack_memory
+from frictionlab.motion.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.scene.body import BodyNumbers
 
 NEAR = 1e-3

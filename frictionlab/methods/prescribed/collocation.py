@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import ROTATED, BristleLaw
 from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, Closed, Loop, Open, Vectors
 from frictionlab.methods.prescribed.periodic_deflection import (
@@ -24,8 +23,9 @@ from frictionlab.methods.prescribed.periodic_deflection import (
     natural_reach,
 )
 from frictionlab.methods.words import ModelWord
-from frictionlab.quantities import Floats
+from frictionlab.motion.steppers.radau_panel import Oscillation
 from frictionlab.scene.body import Motion
+from frictionlab.values.quantities import Floats
 
 FAR = 10.0
 CLOSEST = 1e-12

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.dynamics.contact import resistance
-from frictionlab.dynamics.radau_panel import (
+from frictionlab.motion.contact import resistance
+from frictionlab.motion.steppers.radau_panel import (
     NODES,
     STAGES,
     WEIGHTS,

@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.dynamics.contact import resistance
-from frictionlab.orbit.panels import NODES, WEIGHTS
-from frictionlab.quantities import Floats
+from frictionlab.motion.contact import resistance
+from frictionlab.motion.orbit.recorder import NODES, WEIGHTS
+from frictionlab.values.quantities import Floats
 
 POINTS: Floats = 0.5 * (NODES + 1.0)
 SHARES: Floats = 0.5 * WEIGHTS

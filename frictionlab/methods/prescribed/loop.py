@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.quantities import Floats
+from frictionlab.values.quantities import Floats
 
 Vectors = NDArray[np.complex128]
 

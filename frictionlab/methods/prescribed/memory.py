@@ -25,12 +25,12 @@ from frictionlab.methods.periodic.setting import held_maps
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import BodyNumbers, Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.varying import packed
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.values.quantities import Floats
 
 PERIODS = 100
 """For which a memory that does not forget is followed from each start."""

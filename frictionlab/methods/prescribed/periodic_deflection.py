@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.call import KernelCall
-from frictionlab.dynamics.radau_panel import NODES, WEIGHTS, Oscillation, Scale
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed.deflection_path import follow_period
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open
-from frictionlab.quantities import EPSILON, Floats
+from frictionlab.motion.steppers.radau_panel import NODES, WEIGHTS, Oscillation, Scale
+from frictionlab.values.quantities import EPSILON, Floats
 
 POINTS: Floats = np.concatenate(([0.0], NODES))
 SHARES: Floats = np.concatenate(([0.0], WEIGHTS))

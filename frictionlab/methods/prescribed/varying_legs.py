@@ -15,18 +15,18 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.exact_legs import gained
 from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import WIDEST_PANEL, VaryingSlip, piece_at
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.panels import NODES, WEIGHTS
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import EPSILON, Floats
+from frictionlab.motion.contact import resistance
+from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import NODES, WEIGHTS
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.piecewise import PieceNumbers, Piecewise
+from frictionlab.values.quantities import EPSILON, Floats
 
 FORGETS_NOTHING = (
     "in a period the bristle forgets less of its start than rounding hides: the mean depends on the start"

@@ -14,14 +14,14 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.loop import PrescribedMean, Vectors
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.panels import NODES, WEIGHTS
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import EPSILON, Floats
+from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import NODES, WEIGHTS
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signals, Wave
 from frictionlab.theory.piecewise import PieceNumbers, Piecewise, piecewise
 from frictionlab.theory.prescribed import MeanDirection, mean_direction
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.values.quantities import EPSILON, Floats
 
 NO_SLIP = "the slip rests for a part of the period: friction there is any value up to mu"
 WIDEST_PANEL = math.pi / 16.0

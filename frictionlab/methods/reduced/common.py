@@ -16,18 +16,17 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, ReducedModel, Status, beyond_linear
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
-from frictionlab.methods.refusals import suggest_shooting
-from frictionlab.methods.shooting.method import Shooting
+from frictionlab.methods.shooting.method import Shooting, suggest_shooting
 from frictionlab.methods.shooting.saturated import HELD
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
-from frictionlab.theory.equivalent_drive import equivalent_drive
-from frictionlab.theory.uniqueness import falls_slowly
+from frictionlab.theory.one_harmonic import equivalent_drive
+from frictionlab.theory.rest import falls_slowly
+from frictionlab.values.quantities import Floats
 
 ROUNDING = 1e-10
 """Of models, relative to the friction coefficient: their formulas keep twelve digits or more."""

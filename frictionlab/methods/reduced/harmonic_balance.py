@@ -1,9 +1,12 @@
-"""Harmonic balance: the motion a sine or some harmonics, friction by its mean and as many harmonics."""
+"""Harmonic balance: the motion a sine or some harmonics, friction by its mean and as many harmonics.
+
+Zeros of many monotone functions at once.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -23,12 +26,26 @@ from frictionlab.methods.reduced.common import (
 )
 from frictionlab.methods.reduced.sampled import sampled, sampled_refusal
 from frictionlab.methods.reduced.switched import switched, switched_refusal
-from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.shooting.method import suggest_shooting
 from frictionlab.methods.words import ModelWord
-from frictionlab.numerics.roots import monotone_root
-from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity, one_harmonic_least_ratio, one_harmonic_velocity
+from frictionlab.values.quantities import Floats
+
+
+def monotone_root(function: Callable[..., Floats], low: Floats, high: Floats, *rows: Floats) -> Floats:
+    """Where a function of each row crosses zero between low and high, to rounding; the nearer end where it does not.
+
+    function(x, *rows) is elementwise: it is called with the rows that are not found yet. Chandrupatla's method, as
+    scipy has it.
+    """
+    from scipy.optimize.elementwise import find_root
+
+    found = find_root(function, (low, high), args=rows)
+    (left, right), (below, above) = found.bracket, found.f_bracket
+    nearer = np.where(np.abs(below) < np.abs(above), left, right)
+    return np.where(found.success, found.x, nearer)
+
 
 NOT_ONE_SINE = (
     "harmonic_balance takes sines of the drive's frequency, of loads and of the belt's vibration, under a constant "

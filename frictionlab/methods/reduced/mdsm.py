@@ -25,8 +25,7 @@ from frictionlab.methods.reduced.common import (
 )
 from frictionlab.methods.shooting.saturated import HELD
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import EPSILON, Floats
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
@@ -38,6 +37,7 @@ from frictionlab.theory import (
 )
 from frictionlab.theory.linear import friction_free_response, less
 from frictionlab.theory.rest import stays_at_rest
+from frictionlab.values.quantities import EPSILON, Floats
 
 
 class Mdsm(OfOneModel):

@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
+from frictionlab.values.quantities import Floats
 
 Phasors = NDArray[np.complex128]
 _COALESCED = 1e-5

@@ -19,17 +19,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.law_lanes import takes_lanes
+from frictionlab.compile.lane_arrays import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip, sliding_vectors
 from frictionlab.methods.reduced.common import Modelled, mean_position, plane_refusal
 from frictionlab.methods.reduced.reversals import Phasors, impedances
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.values.quantities import Floats
 
 NOT_SETTLED = (
     "Newton's method does not settle on a motion of {} harmonics: slip passes too near rest for so few, or "

@@ -34,8 +34,8 @@ from frictionlab.methods.relay_locus.search import (
     verdict_of,
     without_piece,
 )
-from frictionlab.numerics.linalg import eliminate
-from frictionlab.quantities import EPSILON
+from frictionlab.motion.linalg import eliminate
+from frictionlab.values.quantities import EPSILON
 
 IMPULSE, ERROR, COUNT, DEGREE, VERDICT, COLUMNS = range(6)
 FREE_STEPS = 256

@@ -35,7 +35,7 @@ from frictionlab.methods.relay_locus.response import (
     wrapped,
 )
 from frictionlab.methods.relay_locus.rest_rule import RestRule
-from frictionlab.numerics.linalg import eliminate
+from frictionlab.motion.linalg import eliminate
 
 MOST_INSTANTS = 96
 

@@ -26,15 +26,14 @@ from frictionlab.methods.relay_locus.response import FreeWaves, response_of
 from frictionlab.methods.relay_locus.rest_rule import rest_rules
 from frictionlab.methods.relay_locus.search import FINE
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbits
-from frictionlab.quantities import EPSILON, Floats
+from frictionlab.motion.orbit.record import Orbits
 from frictionlab.scene.parts import BY_TABLE, REMEMBERING
-from frictionlab.scene.receptance import LinearBody, linear_body
-from frictionlab.scene.receptance_table import TabulatedBody
+from frictionlab.scene.receptance import LinearBody, TabulatedBody, linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal, Wave
-from frictionlab.theory.free_slip import answered, corners_of, friction_free_slip
+from frictionlab.theory.linear import answered, corners_of, friction_free_slip
+from frictionlab.values.quantities import EPSILON, Floats
 
 TAKEN = (*REMEMBERING, BY_TABLE)
 """Keys of a body that leave it linear."""

@@ -27,8 +27,7 @@ from frictionlab.methods.relay_locus.response import (
 )
 from frictionlab.methods.relay_locus.rest_rule import RestRule, RestRules, rule_at
 from frictionlab.methods.relay_locus.search import empty_motion
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.recorder import Track, grown, track_of
+from frictionlab.motion.orbit.recorder import NODES, Track, grown, track_of
 
 FINEST_PANEL = 1e-4
 """Share of the period of the first panel after an instant, where memory has powers that are no whole numbers."""

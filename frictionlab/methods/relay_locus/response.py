@@ -10,9 +10,9 @@ import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 
 from frictionlab.compile.decorators import embedded, fast_embedded, inner
-from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.receptance import LinearBody
 from frictionlab.theory.periodic_response import TERMS, periodic_response
+from frictionlab.values.quantities import EPSILON, Floats
 
 BEND, RATE, VALUE, INTEGRAL, TWICE = range(5)
 PARTS, POWERS = 4, 12

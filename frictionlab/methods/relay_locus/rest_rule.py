@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from frictionlab.compile.decorators import inner
-from frictionlab.quantities import Floats
+from frictionlab.values.quantities import Floats
 
 
 class RestRule(NamedTuple):

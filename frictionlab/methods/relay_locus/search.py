@@ -20,7 +20,7 @@ from frictionlab.methods.relay_locus.locus import (
 )
 from frictionlab.methods.relay_locus.response import RATE, free_slip, side_lag, table_at
 from frictionlab.methods.relay_locus.rest_rule import RestRule
-from frictionlab.numerics.linalg import solve_linear
+from frictionlab.motion.linalg import solve_linear
 
 MOST_NEWTONS, MOST_CUTS = 16, 5
 """Steps; those one after another that the same piece cuts."""

@@ -17,18 +17,13 @@ from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
-from frictionlab.methods.periodic.problem import (
-    PeriodicProblem,
-    Transient,
-    along_the_belt,
-    largest_modulus,
-)
+from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, along_the_belt, largest_modulus
 from frictionlab.methods.shooting.long_mean import LongMean
-from frictionlab.quantities import Floats
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.values.quantities import Floats
 
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""

@@ -25,11 +25,11 @@ from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.methods.shooting.attractors import multiplier
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.panels import NODES, interpolation_weights
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import NODES, interpolation_weights
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
+from frictionlab.values.quantities import Floats
 
 HELD_ACROSS = "across the belt the bristle is elastic under this load: the mean there depends on the start"
 

@@ -24,7 +24,7 @@ from frictionlab.methods.base import (
     Status,
 )
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
-from frictionlab.methods.periodic.map_kinds import MAP_KINDS
+from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
@@ -47,14 +47,19 @@ from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, spread_of_one
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.record import Orbit, Orbits
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbit, Orbits
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.linear import velocity_scale
-from frictionlab.theory.rest import can_hold, friction_at_rest, resting_range, stays_at_rest
+from frictionlab.theory.rest import (
+    can_hold,
+    friction_at_rest,
+    is_unique_in_slip,
+    resting_range,
+    stays_at_rest,
+)
 from frictionlab.theory.springs import BEST, COARSE, is_exact
-from frictionlab.theory.uniqueness import is_unique_in_slip
+from frictionlab.values.quantities import Floats
 
 Complexes = NDArray[np.complex128]
 

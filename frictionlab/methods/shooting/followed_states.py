@@ -25,7 +25,7 @@ from frictionlab.methods.shooting.attractors import (
     same_state,
 )
 from frictionlab.methods.shooting.long_motions import average_unrepeated
-from frictionlab.orbit.record import Orbit
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
 

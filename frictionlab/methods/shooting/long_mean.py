@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.quantities import Floats
+from frictionlab.values.quantities import Floats
 
 BLOCKS = 8
 """Parts of each motion whose means are compared; each long against the time in which motions forget."""

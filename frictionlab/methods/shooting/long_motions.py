@@ -19,9 +19,9 @@ from frictionlab.methods.shooting.attractors import (
     orbit_at_the_end,
 )
 from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
-from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.values.quantities import Floats
 
 LENGTHS = 512, 1024, 2048
 """Periods after which motions are averaged: the next length where the error is not small enough yet."""

@@ -1,4 +1,7 @@
-"""Shooting: the period map of adaptive eighth-order steps, stick included, closed by quasi-Newton steps."""
+"""Shooting: the period map of adaptive eighth-order steps, stick included, closed by quasi-Newton steps.
+
+The end of a refusal: the advice to use shooting, or the reason why shooting refuses as well.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +10,16 @@ from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, FoundState, Method, about_rest, beyond_linear
-from frictionlab.methods.periodic.map_kinds import MAP_KINDS
+from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.shooting.by_receptance import (
-    by_receptance,
-    receptance_refusal,
-    solve_by_receptance,
-)
+from frictionlab.methods.shooting.by_receptance import by_receptance, receptance_refusal, solve_by_receptance
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
-from frictionlab.orbit.record import Orbit
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.parts import BENDING, BY_TABLE, REMEMBERING
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.springs import is_exact
@@ -134,3 +133,8 @@ class Shooting(Method):
         """Motions of a driven mass followed to their ends, and from the ends at one belt speed on at the next."""
         solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
         return follow_states(scenes, law, tolerance, starts) if _is_followed(solve, scenes[0]) else []
+
+
+def suggest_shooting(reason: str, scene: Scene, law: FrictionLaw) -> str:
+    """A refusal with advice on what to use instead."""
+    return f"{reason}; {Shooting().refusal(scene, law) or 'use shooting'}"

@@ -25,15 +25,15 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.continuation import Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.setting import held_maps
-from frictionlab.orbit.harmonics import phasors_of_panels
-from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.sample import phasors_of_panels
 from frictionlab.scene.body import Mass, on_the_line
 from frictionlab.scene.receptance import ComplexValues, LinearBody
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal, Signals, Wave
 from frictionlab.scene.varying import varying_of
-from frictionlab.theory.uniqueness import is_convergent
+from frictionlab.theory.rest import is_convergent
+from frictionlab.values.quantities import Floats
 
 MOST_BROYDEN_STEPS = 80
 """Of Broyden's method."""

@@ -1,7 +1,7 @@
 """Bristles whose one deflection follows the slip's direction: slip never reverses for them, and they end saturated.
 
-Where they do (theory/saturation.py), friction is that of sliding, set-valued at rest: where it is the same at every
-speed, that of Coulomb, and the steady state is the one of a law without memory.
+Where they do (theory/sliding_stability.py), friction is that of sliding, set-valued at rest: where it is the same at
+every speed, that of Coulomb, and the steady state is the one of a law without memory.
 
 Licence (12 scenes, curves of four belt speeds): 28 times faster in the median than
 the period map of mass and bristle in the plane at 1e-6 (19 to 45 times), 33 times at 1e-9 (26 to 39).
@@ -18,11 +18,11 @@ from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
 from frictionlab.methods.base import Answers, Multipliers
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.read import read_columns
-from frictionlab.quantities import Floats
+from frictionlab.motion.orbit.read import read_columns
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.saturation import remaining_share, saturates
-from frictionlab.theory.uniqueness import is_unique_in_slip
+from frictionlab.theory.rest import is_unique_in_slip
+from frictionlab.theory.sliding_stability import remaining_share, saturates
+from frictionlab.values.quantities import Floats
 
 HELD = "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
 

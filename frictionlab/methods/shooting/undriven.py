@@ -17,43 +17,40 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.compile.interpret import interpreted
-from frictionlab.dynamics.motion import mean_friction
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import STATISTICAL, Answers, Status
 from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
 from frictionlab.methods.shooting.long_mean import FREE, LongMean, birkhoff_mean, long_mean
 from frictionlab.methods.shooting.long_motions import SMALL_ERROR, drifts
-from frictionlab.methods.shooting.undriven_cycle import (
-    MOST_RETURNS,
-    RETURN_DISTANCE,
-    Cycle,
-    close_shortest,
-    is_there,
-    nears,
-    radius,
-)
 from frictionlab.methods.shooting.undriven_path import (
     FOLLOWED,
     LEAST,
     MOST_CLOSING,
+    MOST_RETURNS,
     PANELS_AT_FIRST,
+    RETURN_DISTANCE,
     TURN,
+    Cycle,
     Effort,
     NotFound,
     Return,
     Span,
     TooMuchWork,
     UndrivenPath,
+    close_shortest,
+    is_there,
+    nears,
+    radius,
 )
 from frictionlab.methods.under_way import each_told, once
 from frictionlab.methods.words import ModelWord
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.record import Orbit
-from frictionlab.orbit.recorder import Track
-from frictionlab.quantities import Floats
+from frictionlab.motion.equation import mean_friction
+from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import NODES, Track
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.sliding_stability import loses_energy
+from frictionlab.values.quantities import Floats
 
 BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""

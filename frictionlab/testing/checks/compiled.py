@@ -8,13 +8,12 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.dynamics.contact import resistance
-from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.faults import CannotCompile
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import law_check
+from frictionlab.motion.contact import resistance
 from frictionlab.testing.contact import ContactMemory, Response, response
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, law_check
 
 
 @njit

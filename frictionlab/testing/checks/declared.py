@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import for_laws_of, law_check
 from frictionlab.testing.contact import (
     ContactMemory,
     deflection_scale,
@@ -22,7 +21,7 @@ from frictionlab.testing.contact import (
     rounding_noise,
     stored_work,
 )
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, for_laws_of, law_check
 from frictionlab.testing.strategies import directions, sizes, speeds
 
 WITH_MEMORY = for_laws_of(BristleLaw, MemoryLaw, without="without memory")

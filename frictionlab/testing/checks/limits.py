@@ -14,10 +14,9 @@ from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip
 from frictionlab.scene.units import Units, scaled_law
-from frictionlab.testing.check import law_check
 from frictionlab.testing.checks.declared import WITH_MEMORY
 from frictionlab.testing.contact import deflection_scale
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, law_check
 from frictionlab.testing.strategies import sizes
 
 NOT_CONSTANT = (

@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import for_laws_of, law_check
 from frictionlab.testing.checks.declared import BRISTLES, SLOW_TO_QUICK, WITH_MEMORY
 from frictionlab.testing.contact import deflection_scale, dot, response
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, for_laws_of, law_check
 from frictionlab.testing.strategies import directions, evenly, seldom, signs, sizes, speeds
 
 NO_EXACT_PATH = "exact_path() is false for all parameters drawn"

@@ -13,13 +13,12 @@ import numpy as np
 from hypothesis import assume
 from pydantic import ValidationError
 
-from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.registry.records import law_record
-from frictionlab.testing.check import law_check
+from frictionlab.study import registry
+from frictionlab.study.records import law_record
 from frictionlab.testing.contact import ContactMemory, Response, no_plane, response
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, law_check
 from frictionlab.testing.strategies import fullest_laws, loaded_laws, words
 
 YEAR = re.compile(r"\(?\b1[5-9]\d\d\b|\b20\d\d\b")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.scene.units import Units, scaled_law
-from frictionlab.testing.check import law_check
 from frictionlab.testing.contact import Response, has_direction, memory_after_slip, reflect, response, rotate
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, law_check
 from frictionlab.testing.strategies import directions, sizes
 
 BEYOND_LIMIT = 1.5

@@ -15,8 +15,7 @@ from campaign import Campaign, Drawn, Unknown, covered, law_of, log_uniform, sou
 
 import frictionlab as fl
 from drawers import driven
-from frictionlab.bench.peers.equations import OnBristles
-from frictionlab.bench.peers.scipy_steps import one_period
+from frictionlab.bench.peers.equations import OnBristles, one_period
 
 CALLS = 1_500_000
 SETTLED = 3e-10

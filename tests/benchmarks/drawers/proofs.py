@@ -16,9 +16,8 @@ from varying_scenes import draw_varying
 from frictionlab.methods.base import Answers
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.proof.motion import NotProved
-from frictionlab.methods.exact.proof.nodes import starts_of
-from frictionlab.methods.exact.proof.prove import prove
-from frictionlab.theory.uniqueness import is_unique
+from frictionlab.methods.exact.proof.prove import prove, starts_of
+from frictionlab.theory.rest import is_unique
 
 KINDS = {
     "one sine": 0.61,

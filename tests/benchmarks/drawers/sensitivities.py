@@ -18,7 +18,7 @@ from campaign import WRONG, Campaign, Drawn, Verdicts
 
 import frictionlab as fl
 from drawers import driven
-from frictionlab.sensitivity.parameters import Pair
+from frictionlab.analysis.quotients import Pair
 
 NUMBERS, SLOWEST = 3, 0.3
 OFFSETS = 1e-2, 2e-3, 4e-4, 8e-5

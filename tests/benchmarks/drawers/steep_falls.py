@@ -18,7 +18,7 @@ from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import Attractor, closed_orbit, orbit_at_the_end
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
-from frictionlab.theory.uniqueness import falls_slowly
+from frictionlab.theory.rest import falls_slowly
 
 LONG, STARTS = 4000, 64
 BRISTLES = 0.03

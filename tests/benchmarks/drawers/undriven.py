@@ -17,8 +17,8 @@ from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from drawers import every_law
-from frictionlab.quantities import Floats
 from frictionlab.theory.sliding_stability import steady_deflection
+from frictionlab.values.quantities import Floats
 
 KINDS = (
     "dahl",

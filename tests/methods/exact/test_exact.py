@@ -20,7 +20,7 @@ from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.legs import first_zero
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import Fixed, impulse_error, passage
-from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.scene import Drive, Initial, Scene, Slip, TransverseSlip
 from frictionlab.theory import (
     friction_free_velocity,

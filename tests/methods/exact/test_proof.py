@@ -19,8 +19,13 @@ flint = pytest.importorskip("flint", reason="python-flint is not installed")
 
 from frictionlab.methods.exact.proof.forces import forces_of  # noqa: E402  # python-flint need not be there
 from frictionlab.methods.exact.proof.motion import Mechanics, NotProved, values_at  # noqa: E402
-from frictionlab.methods.exact.proof.nodes import starts_of  # noqa: E402
-from frictionlab.methods.exact.proof.prove import BITS, Unproved, enclosed_mean, prove  # noqa: E402
+from frictionlab.methods.exact.proof.prove import (  # noqa: E402
+    BITS,
+    Unproved,
+    enclosed_mean,
+    prove,
+    starts_of,
+)
 
 RESONANCE = fl.Scene(
     damping_ratio=0.1, normal_load=10, belt_speed=10, drive=fl.Drive(amplitude=10, frequency=1)

@@ -13,7 +13,7 @@ from outside_forcing import BELT1, LOAD1, NORMAL, forcing
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
-from frictionlab.orbit.panels import DERIVATIVE, WEIGHTS
+from frictionlab.motion.orbit.recorder import DERIVATIVE, WEIGHTS
 from frictionlab.scene.scene import Scene
 
 REFERENCE = Path(__file__).parents[2] / "reference"

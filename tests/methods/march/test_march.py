@@ -19,14 +19,14 @@ from strategies import scenes_in_the_plane, scenes_on_the_line
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.march.error import REVERSING, SMOOTH, bias, richardson
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.numerics.richardson import REVERSING, SMOOTH, bias, richardson
-from frictionlab.orbit.read import read_columns
+from frictionlab.motion.orbit.read import read_columns
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.values.notes import WrongValues
 
 LAW = Coulomb(mu=0.4)
 PLANAR = sorted(REFERENCE.glob("planar_fig*.csv"))

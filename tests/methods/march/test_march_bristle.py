@@ -19,7 +19,6 @@ from strategies import sizes
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.dynamics.contact import advance_bristle, project_to_yield
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
@@ -29,7 +28,8 @@ from frictionlab.methods.march.adapters import Exponential, Rk4, Sdirk2
 from frictionlab.methods.march.lap import MarchSettings
 from frictionlab.methods.march.laps import MarchState, march_laps
 from frictionlab.methods.march.method import March
-from frictionlab.numerics.steppers.rk4 import DECAY
+from frictionlab.motion.contact import advance_bristle, project_to_yield
+from frictionlab.motion.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
 

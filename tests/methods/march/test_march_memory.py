@@ -11,8 +11,7 @@ from rate_and_state import RateAndState
 
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.methods.march.method import March
-from frictionlab.methods.march.stability import fewest_steps
-from frictionlab.methods.march.steppers import STEPPERS
+from frictionlab.methods.march.steppers import STEPPERS, fewest_steps
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip
 

@@ -13,17 +13,16 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.interpret import interpreted, interpreted_on_arrays
-from frictionlab.compile.law_lanes import friction_by_lane, takes_lanes
+from frictionlab.compile.lane_arrays import friction_by_lane, takes_lanes
 from frictionlab.laws.base import SlidingLaw
-from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.continuation import CLOSED
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
 from frictionlab.methods.periodic.lane_map import lane_map, rows_for
-from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
-from frictionlab.methods.periodic.maps.pace import noting
+from frictionlab.methods.periodic.lane_record import differentiate_in_lanes
 from frictionlab.methods.periodic.period_map import paced_image
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.orbit.recorder import track_of
+from frictionlab.motion.maps.case import case_of, noting
+from frictionlab.motion.orbit.recorder import track_of
 
 LAW = fl.Coulomb(mu=0.4)
 FALLING = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2.0)

@@ -21,8 +21,8 @@ from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.prescribed.deflection_path import _dips
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import WEIGHTS
-from frictionlab.orbit.sample import sample
+from frictionlab.motion.orbit.recorder import WEIGHTS
+from frictionlab.motion.orbit.sample import sample
 from frictionlab.scene.scene import Scene, Slip, TransverseSlip
 
 TOLERANCE = 1e-9

@@ -17,8 +17,8 @@ from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
+from frictionlab.methods.reduced.bristle import Loops
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
-from frictionlab.methods.reduced.loops import Loops
 from frictionlab.theory import dahl_describing_function, friction_free_velocity, jenkins_describing_function
 
 REFERENCE = Path(__file__).parents[2] / "reference"

@@ -14,14 +14,13 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
-from frictionlab.methods.reduced.legs import SwitchedLine
 from frictionlab.methods.reduced.sampled import Equations, _switches, balanced
-from frictionlab.methods.reduced.switched import switched_motions
+from frictionlab.methods.reduced.switched import SwitchedLine, switched_motions
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.mistakes.notes import WrongValues
-from frictionlab.orbit.harmonics import harmonic_parts
+from frictionlab.motion.orbit.sample import harmonic_parts
 from frictionlab.scene.scene import Drive, Scene
 from frictionlab.theory import friction_free_velocity
+from frictionlab.values.notes import WrongValues
 
 LAW = Coulomb(mu=0.4)
 STRIBECK = Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=30.0)

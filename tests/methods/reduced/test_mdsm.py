@@ -17,7 +17,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.mdsm import Mdsm, friction_free_motion
-from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.scene import Drive, Scene, Slip, TransverseSlip
 from frictionlab.theory import friction_free_velocity
 

@@ -25,10 +25,10 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
 from frictionlab.methods.reduced.mdsm import Mdsm
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse
 from frictionlab.theory import friction_free_velocity
-from frictionlab.theory.equivalent_drive import equivalent_drive
+from frictionlab.theory.one_harmonic import equivalent_drive
 
 LAW = Coulomb(mu=0.4)
 SOFT = Dahl(mu=0.4, presliding_length=0.5)

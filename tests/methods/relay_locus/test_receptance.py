@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 import frictionlab as fl
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.relay_locus.method import LocusCurve, RelayLocus
-from frictionlab.mistakes.notes import StudyError, WrongValues
-from frictionlab.scene.receptance_table import read_receptance
+from frictionlab.scene.receptance import read_receptance
 from frictionlab.scene.scene import Body, Drive, Receptance, Scene
+from frictionlab.values.notes import StudyError, WrongValues
 
 LAW = Coulomb(mu=0.4)
 SPEEDS = np.array([0.2, 1.0, 3.0, 6.0, 12.0, 40.0])

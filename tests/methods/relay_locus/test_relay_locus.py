@@ -21,7 +21,7 @@ from frictionlab.methods.auto import Auto
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.relay_locus.method import UNSOLVED, RelayLocus
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.harmonics import phasors_of_panels
+from frictionlab.motion.orbit.sample import phasors_of_panels
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Body, Drive, Fractional, Initial, Relaxation, Scene, Transverse
 from frictionlab.theory import friction_free_velocity

@@ -21,7 +21,7 @@ from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import Destination, describe
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse
-from frictionlab.theory.uniqueness import is_convergent
+from frictionlab.theory.rest import is_convergent
 
 MILD = Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=8.0)
 ACROSS = Transverse(natural_frequency=4.0, damping_ratio=0.1, load=Load(unbalance=10.0))

@@ -10,8 +10,7 @@ from answered import with_columns
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.bench.peers.equations import OnBristles
-from frictionlab.bench.peers.scipy_steps import one_period
+from frictionlab.bench.peers.equations import OnBristles, one_period
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.shooting.method import Shooting
 

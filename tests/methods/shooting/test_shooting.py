@@ -18,7 +18,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import DERIVATIVE
+from frictionlab.motion.orbit.recorder import DERIVATIVE
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Transverse
 from frictionlab.theory.rest import resting_range, stays_at_rest
 

@@ -2,24 +2,181 @@
 
 With damping and under constant friction a scene whose mass must slip has one periodic motion (theory/uniqueness): an
 orbit that is proved to exist has the mean of every motion in the long run.
+
+The nodes of an orbit that was found in floating-point numbers, as a first guess of those to be enclosed.
+
+Another list of legs where the first is not that of the scene.
+
+Next to the onset of a leg rounding may find the orbit with it or without it. What the proof found wrong says which.
+
+Mean friction of an enclosed orbit.
+
+Answers of the exact method with their means proved, where that can be done.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
 
+import numpy as np
 from flint import arb, ctx
 
-from frictionlab.methods.exact.proof.forces import forces_of
-from frictionlab.methods.exact.proof.mean import mean_force
-from frictionlab.methods.exact.proof.motion import Mechanics, NotProved
-from frictionlab.methods.exact.proof.nodes import LegStart, nodes_of, starts_of
-from frictionlab.methods.exact.proof.repair import repaired
-from frictionlab.methods.exact.proof.signs import check_signs
-from frictionlab.methods.exact.proof.system import Event, EventState, enclose, event_states
-from frictionlab.orbit.record import Orbit
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Answers
+from frictionlab.methods.exact.proof.forces import Forces, forces_of
+from frictionlab.methods.exact.proof.motion import Mechanics, NotProved, double_integral, integral, values_at
+from frictionlab.methods.exact.proof.signs import NoReversal, NoStick, Wrong, check_signs
+from frictionlab.methods.exact.proof.system import Event, EventState, enclose, event_states, leg_parts, legs
+from frictionlab.methods.words import ModelWord
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import is_unique
+
+SHORTEST_LEG = 1e-13
+"""Of a period: legs shorter than this are dropped."""
+AT_CORNER = 1e-12
+"""Of a period: how near to a corner an event may be taken for one that the corner makes."""
+
+
+class LegStart(NamedTuple):
+    """Where a leg begins: its sign of slip, 0 in stick, time, position and velocity."""
+
+    sign: int
+    tau: float
+    x: float
+    v: float
+
+
+def starts_of(orbit: Orbit, period: float) -> list[LegStart]:
+    """The starts of the legs of an orbit that begins at time 0, in the order of time."""
+    middle = orbit.tau.shape[1] // 2
+    assert orbit.stick is not None
+    signs = np.where(orbit.stick, 0, np.sign(orbit.friction[:, middle].real)).astype(int).tolist()
+    ends = zip(orbit.tau[:, 0], orbit.tau[:, -1], orbit.x[:, 0].real, orbit.v[:, 0].real, strict=True)
+    found: list[LegStart] = []
+    for sign, (tau, stop, x, v) in zip(signs, ends, strict=True):
+        if stop - tau > SHORTEST_LEG * period and not (found and found[-1].sign == sign):
+            found.append(LegStart(sign, float(tau), float(x), float(v)))
+    if len(found) > 1 and found[0].sign == found[-1].sign:
+        del found[0]  # the last leg goes on into the next period
+    return found
+
+
+def nodes_of(forces: Forces, starts: list[LegStart]) -> tuple[tuple[Event, ...], list[float]]:
+    """Nodes and guesses of their unknowns. Raises NotProved."""
+    if (
+        len(starts) == 1
+    ):  # slip that never reverses: any corner, or any time, will do as the start of its one leg
+        return (Event(starts[0].sign, 0, True, True),), [starts[0].x, starts[0].v]
+    period, first = float(forces.period.mid()), float(forces.pieces[0].start.mid())
+    corners = np.array([float(piece.start.mid()) for piece in forces.pieces])
+    found = []
+    for i, one in enumerate(starts):
+        before, tau = starts[i - 1].sign, first + (one.tau - first) % period
+        if first + period - tau < AT_CORNER * period:  # at the first corner, a period on
+            tau -= period
+        near = int(np.argmin(np.abs(corners - tau)))
+        at_corner = not forces.smooth and abs(corners[near] - tau) < AT_CORNER * period
+        slides = bool(at_corner and before and forces.pieces[near].belt_jumps and _slides(forces, near, one))
+        fixed = slides or (at_corner and before == 0)
+        piece = near if fixed else max(int(np.searchsorted(corners, tau, side="right")) - 1, 0)
+        found.append((float(corners[near]) if fixed else tau, Event(one.sign, piece, fixed, slides), one))
+    nodes, guess = [], []
+    for tau, node, one in sorted(found, key=lambda each: each[0]):
+        nodes.append(node)
+        guess += [] if node.fixed else [tau]
+        guess += [one.x, one.v] if node.slides else [one.x]
+    return tuple(nodes), guess
+
+
+def _slides(forces: Forces, place: int, one: LegStart) -> bool:
+    """Whether the mass slides just before this corner."""
+    piece = forces.pieces[place - 1]
+    belt: Any = values_at(piece.belt, piece.start, piece.stop).value
+    return abs(one.v - float(belt.mid())) > 1e-9 * (abs(one.v) + 1e-300)
+
+
+def repaired(starts: list[LegStart], period: float, problem: NotProved) -> list[LegStart]:
+    """The legs without what is wrong with them, in the order of time. Raises the problem where that is not known."""
+    if isinstance(problem, NoReversal):
+        return _inserted(starts, problem.leg, [starts[problem.leg]._replace(sign=0)])
+    if isinstance(problem, NoStick):
+        return _with_a_reversal(starts, problem)
+    if isinstance(problem, Wrong):
+        return _with_a_leg(starts, problem)
+    return _without_the_shortest(starts, period, problem)
+
+
+def _inserted(starts: list[LegStart], place: int, new: list[LegStart]) -> list[LegStart]:
+    """With new legs before that at this place."""
+    return _joined([*starts[:place], *new, *starts[place:]])
+
+
+def _with_a_reversal(starts: list[LegStart], problem: NoStick) -> list[LegStart]:
+    """Slip where stick was to begin: all the while, or a little where friction comes to hold the mass after all."""
+    wrong = starts[problem.leg]
+    reversed_, rest = wrong._replace(sign=problem.side), starts[problem.leg + 1 :]
+    excess, bend, _x = problem.beyond
+    if bend > 0.0:
+        length = 2.0 * excess / bend
+        rest = [wrong._replace(tau=wrong.tau + length), *rest]
+    return _joined([*starts[: problem.leg], reversed_, *rest])
+
+
+def _with_a_leg(starts: list[LegStart], problem: Wrong) -> list[LegStart]:
+    """A short stick where slip comes to rest, a short slip where stick exceeds the limit."""
+    excess, bend, x = problem.beyond
+    if not (excess > 0.0 and bend > 0.0):
+        raise problem
+    leg = starts[problem.leg]
+    tau, half = leg.tau + problem.after, math.sqrt(2.0 * excess / bend)
+    first, last = (tau - half, tau) if leg.sign else (tau - half, tau + 2.0 * half)
+    inside = 0 if leg.sign else problem.side
+    new = [LegStart(inside, first, x, leg.v), LegStart(leg.sign, last, x, leg.v)]
+    return _inserted(starts, problem.leg + 1, new)
+
+
+def _without_the_shortest(starts: list[LegStart], period: float, problem: NotProved) -> list[LegStart]:
+    if len({one.sign for one in starts}) < 2:
+        raise problem
+    lengths = [(starts[(i + 1) % len(starts)].tau - one.tau) % period for i, one in enumerate(starts)]
+    shortest = min(range(len(starts)), key=lambda i: min(lengths[i], period - lengths[i]))
+    kept = _joined([one for i, one in enumerate(starts) if i != shortest])
+    if len(kept) == 1 and not kept[0].sign:
+        raise problem
+    return kept
+
+
+def _joined(starts: list[LegStart]) -> list[LegStart]:
+    """Neighbours of the same sign are one leg."""
+    kept = [one for i, one in enumerate(starts) if one.sign != starts[i - 1].sign]
+    return kept or starts[:1]
+
+
+def mean_force(mechanics: Mechanics, nodes: tuple[Event, ...], states: tuple[EventState, ...]) -> Any:
+    """Mean of the friction force on the mass over a common period [K_1 L]."""
+    impulse = arb(0)
+    for leg in legs(nodes, states):
+        x = leg.start.x
+        for piece, low, high in leg_parts(mechanics.forces, leg):
+            if leg.node.sign:
+                pressed = integral(piece.normal_load, piece.start, low, high)
+                impulse = impulse - leg.node.sign * mechanics.mu * pressed
+                continue
+            # friction carries the mass along: B' + 2 b B + x - F
+            travel = integral(piece.belt, piece.start, low, high)
+            gained = (
+                values_at(piece.belt, piece.start, high).value - values_at(piece.belt, piece.start, low).value
+            )
+            stretched = x * (high - low) + double_integral(piece.belt, piece.start, low, high)
+            pushed = integral(piece.load, piece.start, low, high)
+            impulse = impulse + gained + 2 * mechanics.b * travel + stretched - pushed
+            x = x + travel
+    return impulse / mechanics.forces.period
+
 
 BITS, MORE_BITS = 128, 320
 """Of numbers; more where a leg is so short that the first leave its sign open."""
@@ -86,3 +243,33 @@ def _rounded(mean: arb) -> Proved:
     middle = float(mean.mid())
     error = abs(mean - arb(middle)).upper()
     return Proved(middle, math.nextafter(float(error), math.inf))
+
+
+NOT_UNIQUE = "not proved: no theorem says that there is no other orbit"
+
+
+def certified(answers: Answers, scenes: Sequence[Scene], law: FrictionLaw) -> Answers:
+    """The same, its estimated errors replaced by proved ones; where the proof fails the reason says at what."""
+    mean, error = answers.mean.copy(), answers.error.copy()
+    kind, model, reason = list(answers.error_kind), list(answers.model), list(answers.reason)
+    coefficient = law.sliding_friction(1.0)
+    for i, scene in enumerate(scenes):
+        if answers.status[i] != "ok" or kind[i] == "guaranteed":
+            continue
+        orbit = answers.orbit(i)
+        problem = NOT_UNIQUE
+        if orbit is not None and is_unique(scene, law):
+            try:
+                proved = prove(scene, coefficient, orbit)
+            except NotProved as why:
+                problem = f"not proved: {why}"
+            else:
+                mean[i], error[i], kind[i], model[i] = (
+                    proved.mean,
+                    proved.error,
+                    "guaranteed",
+                    f"{model[i]}; {ModelWord.INTERVALS}",
+                )
+                continue
+        reason[i] = "; ".join(part for part in (reason[i], problem) if part)
+    return replace(answers, mean=mean, error=error, error_kind=kind, model=model, reason=reason)

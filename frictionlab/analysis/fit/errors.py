@@ -1,0 +1,161 @@
+"""Errors of fitted numbers: the naive ones, which take residuals for independent, and those from blocks left out.
+
+Leaving a block b out moves the optimum by (J'J - J_b'J_b)^-1 J_b' r_b to first order (J: slopes, r: residuals); the
+jackknife over blocks (Quenouille, 1956; Tukey, 1958; for dependent data Kunsch, 1989) makes an error of these moves.
+
+Measurements in blocks that know nothing of each other: given, cycles of a path, or runs of alike residuals.
+
+Combinations of numbers that measurements see, where they do not see the numbers themselves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t
+
+from frictionlab.analysis.fit.measured import Measurements
+from frictionlab.values.printable import with_error
+from frictionlab.values.quantities import Floats
+
+FEWEST, MOST = 4, 60
+"""Blocks that are cut where none are given."""
+TIMES_AS_LONG = 4.0
+"""A block against the length over which residuals are correlated."""
+
+
+def blocks_of(measured: Measurements, residuals: Floats) -> tuple[NDArray[np.int64], str]:
+    """The block of each row, from 0, and a word on where it is from."""
+    if "block" in measured.table:
+        return np.unique(measured.table["block"].astype(str), return_inverse=True)[1], "given"
+    if measured.is_path and (cycles := _cycles(measured)) is not None:
+        return cycles, "cycles of the slip"
+    order = np.argsort(measured.table[measured.along].to_numpy(dtype=float), kind="stable")
+    length = TIMES_AS_LONG * correlation_length(residuals[order])
+    count = int(
+        np.clip(
+            len(residuals) / length, min(FEWEST, len(residuals)), MOST if measured.is_path else len(residuals)
+        )
+    )
+    cut = np.empty(len(residuals), np.int64)
+    cut[order] = np.arange(len(residuals)) * count // len(residuals)
+    return cut, "runs of correlated residuals" if count < len(residuals) else "single points"
+
+
+def autocorrelation(residuals: Floats, most: int) -> Floats:
+    """Of residuals in their order, at the lags from 0 to this one."""
+    apart = residuals - residuals.mean()
+    size = 1 << (2 * len(apart) - 1).bit_length()
+    spectrum = np.abs(np.fft.rfft(apart, size)) ** 2
+    found = np.fft.irfft(spectrum, size)[: most + 1]
+    return np.asarray(found / found[0]) if found[0] > 0.0 else np.eye(1, most + 1)[0]
+
+
+def correlation_length(residuals: Floats) -> float:
+    """One and twice the sum of the autocorrelation up to its first value below 0: samples that count as one.
+
+    One where neighbours are no more alike than independent ones may be by chance.
+    """
+    if len(residuals) < 4:
+        return 1.0
+    found = autocorrelation(residuals, len(residuals) // 2)[1:]
+    if found[0] < 2.0 / math.sqrt(len(residuals)):
+        return 1.0
+    below = np.flatnonzero(found < 0.0)
+    return 1.0 + 2.0 * float(found[: below[0] if below.size else len(found)].sum())
+
+
+def _cycles(measured: Measurements) -> NDArray[np.int64] | None:
+    """Whole swings of the slip about its mean, where it has several; a start before the first belongs to that."""
+    slip = measured.table["slip"].to_numpy(dtype=float)
+    swing = np.ptp(slip)
+    high, low = slip.mean() + 0.25 * swing, slip.mean() - 0.25 * swing
+    side = np.where(slip > high, 1, np.where(slip < low, -1, 0))
+    known = np.flatnonzero(side)
+    rises = known[1:][(side[known[1:]] == 1) & (side[known[:-1]] == -1)]
+    if len(rises) < FEWEST:
+        return None
+    cycle = np.searchsorted(rises, np.arange(len(slip)), side="right") - 1
+    last = len(rises) - 1
+    return np.clip(cycle, 0, last - 1 if last > 0 else 0).astype(np.int64)
+
+
+LEVEL = 0.95
+"""Of every interval."""
+UNSEEN = 1e-10
+"""Share of the largest curvature below which a direction is not seen at all: its error is that of this share."""
+
+
+@dataclass(frozen=True, eq=False)
+class Covariances:
+    """Of the shares of the ranges. naive: residuals independent, of one size; by_blocks: by the jackknife.
+
+    scale: variance of a residual over its stated one; quantile: standard errors of a two-sided interval of ``LEVEL``.
+    """
+
+    naive: Floats
+    by_blocks: Floats
+    scale: float
+    quantile: float
+
+    @property
+    def inflation(self) -> Floats:
+        """Errors from blocks over the naive ones; 1 of what is not seen."""
+        naive, blocks = np.sqrt(np.diag(self.naive)), np.sqrt(np.diag(self.by_blocks))
+        seen = (naive < 1.0) & (naive > 0.0)
+        return np.divide(blocks, naive, out=np.ones(len(naive)), where=seen)
+
+
+def covariances(slopes: Floats, residuals: Floats, blocks: NDArray[np.int64], stated: bool) -> Covariances:
+    """From the slopes and residuals at the optimum. stated: whether residuals are over stated standard errors."""
+    count, size = slopes.shape
+    rest = max(count - size, 1)
+    scale = 1.0 if stated else float(residuals @ residuals) / rest
+    sizes, ways = np.linalg.eigh(slopes.T @ slopes)
+    least = UNSEEN * max(float(sizes[-1]), 1e-300)
+    seen, variances = sizes > least, scale / np.maximum(sizes, least)
+    parts, own = [np.flatnonzero(blocks == block) for block in np.unique(blocks)], slopes @ ways[:, seen]
+    curvature, moves = own.T @ own, []
+    for rows in parts:
+        part = own[rows]
+        moves.append(
+            np.linalg.solve(curvature - part.T @ part + least * np.eye(seen.sum()), part.T @ residuals[rows])
+        )
+    moved, number = np.array(moves) - np.mean(moves, axis=0), len(parts)
+    scatter = (number - 1) / number * moved.T @ moved
+    whole = np.diag(np.where(seen, 0.0, variances))
+    whole[np.ix_(seen, seen)] = scatter
+    naive, by_blocks = ways @ np.diag(variances) @ ways.T, ways @ whole @ ways.T
+    return Covariances(naive, by_blocks, scale, float(t.ppf(0.5 + 0.5 * LEVEL, max(number - 1, 1))))
+
+
+LARGE = 0.5
+"""Relative error of a combination that is not seen."""
+PART = 0.3
+SAME_PARTS = 1.25
+"""Ratio of the parts of two numbers up to which they count as a product or a quotient."""
+
+
+def unseen_sentence(names: Sequence[str], values: Floats, relative: Floats) -> str:
+    """On the combination that is least seen; '' where all are. relative: covariance of the values over themselves."""
+    if len(names) < 2 or not np.isfinite(relative).all():
+        return ""
+    sizes, ways = np.linalg.eigh(relative)
+    way = ways[:, -1]
+    parts = [int(part) for part in np.flatnonzero(np.abs(way) > PART)]
+    if math.sqrt(max(sizes[-1], 0.0)) < LARGE or len(parts) < 2:
+        return ""
+    together = " and ".join(names[part] for part in parts)
+    if len(parts) > 2 or not 1.0 / SAME_PARTS < abs(way[parts[0]] / way[parts[1]]) < SAME_PARTS:
+        return f"a combination of {together} is not seen: they may change together"
+    one, other = parts
+    seen = np.zeros(len(names))
+    seen[one], seen[other] = 1.0, -math.copysign(1.0, way[one] * way[other])
+    value = float(values[one] * values[other] ** seen[other])
+    error = abs(value) * math.sqrt(max(float(seen @ relative @ seen), 0.0))
+    sign = "*" if seen[other] > 0 else "/"
+    return f"only {names[one]}{sign}{names[other]} is seen: {with_error(value, error)}"

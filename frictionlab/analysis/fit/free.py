@@ -1,0 +1,142 @@
+"""The numbers that a fit may change: of a law and of its scene, each within its range, on an even or a log scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.scene.scene import Scene
+from frictionlab.study.data import read_range
+from frictionlab.study.study import kind_of
+from frictionlab.values.notes import PYTHON, Notes, closest, dotted
+from frictionlab.values.quantities import Floats, given_values
+
+LOG_ABOVE = 100.0
+"""Ratio of the ends of a positive range above which it is searched by its logarithm."""
+INSTEAD = [
+    {"stiffness", "presliding_length", "contact_stiffness"},
+    {"damping", "contact_damping"},
+]
+"""Numbers of a law of which one alone is given."""
+
+
+@dataclass(frozen=True)
+class FreeNumber:
+    """One: its name, its range, whether it is searched by its logarithm."""
+
+    name: str
+    low: float
+    high: float
+    by_log: bool
+
+    def value(self, share: float) -> float:
+        """At this share of the range."""
+        if self.by_log:
+            return float(math.exp((1.0 - share) * math.log(self.low) + share * math.log(self.high)))
+        return float(self.low + share * (self.high - self.low))
+
+    def share(self, value: float) -> float:
+        """The share of the range at which a value is."""
+        if self.by_log:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+    def slope(self, value: float) -> float:
+        """d(value)/d(share)."""
+        return value * math.log(self.high / self.low) if self.by_log else self.high - self.low
+
+
+@dataclass(frozen=True)
+class Model:
+    """A law and a scene (None for a path of slip) with some free numbers."""
+
+    law: FrictionLaw
+    scene: Scene | None
+    free: tuple[FreeNumber, ...]
+
+    @property
+    def label(self) -> str:
+        """What tables call the law."""
+        return self.law.label or type(self.law).__name__
+
+    @property
+    def words(self) -> str:
+        """What sentences and figures call it."""
+        own = self.law.label not in ("", kind_of(self.law))
+        return self.label if own else type(self.law).in_words or self.label
+
+    def values(self, shares: Floats) -> dict[str, float]:
+        """The free numbers at these shares of their ranges."""
+        return {each.name: each.value(float(share)) for each, share in zip(self.free, shares, strict=True)}
+
+    def at(self, shares: Floats) -> tuple[FrictionLaw, Scene | None]:
+        """The law and the scene at these shares. Raises ValueError where they are none."""
+        values = self.values(shares)
+        of_scene = {name.removeprefix("scene."): x for name, x in values.items() if name.startswith("scene.")}
+        of_law = {name: x for name, x in values.items() if not name.startswith("scene.")}
+        scene = self.scene.with_(**of_scene) if self.scene and of_scene else self.scene
+        return with_numbers(self.law, of_law), scene
+
+
+def with_numbers(law: FrictionLaw, values: Mapping[str, float]) -> FrictionLaw:
+    """The law with these numbers in place of its own; one of several in a list by ``name[0]``."""
+    told = given_values(law)
+    for name, value in values.items():
+        for group in INSTEAD:
+            if name in group:
+                told = {key: x for key, x in told.items() if key not in group or key == name}
+        head, bracket, place = name.partition("[")
+        if bracket:
+            several = list(told[head])
+            several[int(place.rstrip("]"))] = value
+            told[head] = tuple(several)
+        else:
+            told[name] = value
+    return type(law)(**told, label=law.label)
+
+
+def free_numbers(
+    given: Mapping[str, Any], laws: Sequence[FrictionLaw], scene: Scene | None
+) -> dict[int, tuple[FreeNumber, ...]]:
+    """Of each law, by its place, the free numbers that it has. Raises ValueError for a name that nothing has."""
+    if not isinstance(given, Mapping) or not given:
+        raise ValueError(f"free must be a mapping such as {{'mu': (0.1, 1.0)}}, got {given!r}")
+    of_scene = {} if scene is None else _numbers_of(scene.given_values(), "scene.")
+    known = [_numbers_of(dict(law), "") for law in laws]
+    for name in given:
+        if name not in of_scene and not any(name in law for law in known):
+            every = [*of_scene, *(each for law in known for each in law)]
+            hint = closest(name, every)
+            raise ValueError(
+                f"free: no number '{name}' of the laws or the scene{f'; did you mean {hint!r}?' if hint else ''}"
+            )
+    ranges = {name: _range(name, value) for name, value in given.items()}
+    return {
+        place: tuple(each for name, each in ranges.items() if name in of_scene or name in law)
+        for place, law in enumerate(known)
+    }
+
+
+def _numbers_of(values: Mapping[str, Any], before: str) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            found |= {f"{before}{name}[{k}]": each for k, each in enumerate(value)}
+        elif value is None or (isinstance(value, float | int) and not isinstance(value, bool)):
+            found[f"{before}{name}"] = value
+    return found
+
+
+def _range(name: str, given: Any) -> FreeNumber:
+    """Raises ValueError with the first mistake in a range."""
+    notes = Notes(notation=PYTHON)
+    read = read_range(given, name, notes)
+    if notes.all:
+        raise ValueError(f"{dotted(notes.all[0].path)}: {notes.all[0].what}")
+    assert read is not None
+    low, high, spacing = read
+    far = low > 0.0 and high / low >= LOG_ABOVE
+    return FreeNumber(name, low, high, spacing == "log" or (spacing is None and far))

@@ -1,0 +1,363 @@
+"""What a fit found: numbers with errors and intervals for each law, how well each foretells, and sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictionlab.analysis.fit.errors import (
+    Covariances,
+    autocorrelation,
+    correlation_length,
+    covariances,
+    unseen_sentence,
+)
+from frictionlab.analysis.fit.free import Model
+from frictionlab.analysis.fit.measured import Measurements
+from frictionlab.analysis.fit.profiles import LeftOut, Profile, profile, without_blocks
+from frictionlab.analysis.fit.residuals import ON_A_BOUND, Residuals, SearchEnds
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.scene.scene import Scene
+from frictionlab.values.printable import with_error
+from frictionlab.values.quantities import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLaw:
+    """One law at its optimum; errors, profiles and what it foretells are found when asked for.
+
+    blocks: of each row; blocks_from: a word on where they are from.
+    """
+
+    residuals: Residuals
+    found: SearchEnds
+    blocks: NDArray[np.int64]
+    blocks_from: str
+
+    @property
+    def model(self) -> Model:
+        """The law, its scene and its free numbers."""
+        return self.residuals.model
+
+    @cached_property
+    def said(self) -> Floats:
+        """What it says at each row."""
+        return self.residuals.said(self.found.best.shares)
+
+    @property
+    def raw(self) -> Floats:
+        """Said less measured."""
+        return self.said - self.residuals.measured.values
+
+    def autocorrelation(self, order: NDArray[np.int64], most: int) -> Floats:
+        """Of what is left, in this order of rows, up to this lag."""
+        return autocorrelation(self.raw[order], most)
+
+    @property
+    def chi2(self) -> float:
+        """Sum of squares over the stated variances."""
+        return 2.0 * self.found.best.cost
+
+    @cached_property
+    def covariances(self) -> Covariances:
+        """Of the shares of the ranges; the numbers on an end of their range held."""
+        free = [place for place, bound in enumerate(self.on_a_bound) if not bound]
+        slopes = np.zeros((len(self.raw), len(self.on_a_bound)))
+        if free:
+            slopes[:, free] = self.residuals.slopes(self.found.best.shares, free)
+        stated = self.residuals.measured.sigma is not None
+        return covariances(slopes, self.found.best.residuals, self.blocks, stated)
+
+    @cached_property
+    def profiles(self) -> tuple[Profile, ...]:
+        """Of each number."""
+        errors = self.covariances
+        rises = np.maximum(errors.scale * (errors.quantile * errors.inflation) ** 2, 1e-300)
+        return tuple(
+            profile(self.residuals, self.found.best, place, float(rise), self.found.others)
+            for place, rise in enumerate(rises)
+        )
+
+    @cached_property
+    def left_out(self) -> LeftOut:
+        """How well it foretells blocks that it was not fitted to."""
+        return without_blocks(self.residuals, self.found.best, self.blocks)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted numbers."""
+        return self.model.values(self.found.best.shares)
+
+    def errors(self, covariance: Floats) -> dict[str, float]:
+        """Standard errors of the values; NaN for a number on an end of its range."""
+        values = self.values
+        spread = np.sqrt(np.diag(covariance))
+        return {
+            each.name: float("nan") if bound else float(each.slope(values[each.name]) * size)
+            for each, size, bound in zip(self.model.free, spread, self.on_a_bound, strict=True)
+        }
+
+    @property
+    def on_a_bound(self) -> list[bool]:
+        """Which numbers are on an end of their range."""
+        shares = self.found.best.shares
+        return [bool(min(share, 1.0 - share) < ON_A_BOUND) for share in shares]
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Of 95 %, by profiles that rise as blocks scatter."""
+        return {
+            each.name: (each.value(one.low), each.value(one.high))
+            for each, one in zip(self.model.free, self.profiles, strict=True)
+        }
+
+    @property
+    def shapes(self) -> dict[str, str]:
+        """Of each profile, in a word."""
+        return {each.name: one.form for each, one in zip(self.model.free, self.profiles, strict=True)}
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of said less measured."""
+        return float(np.sqrt(np.mean(self.raw**2)))
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion: of stated errors by chi2, else by the residuals' own size."""
+        count, numbers = len(self.raw), len(self.model.free)
+        if self.residuals.measured.sigma is not None:
+            return self.chi2 + 2.0 * numbers
+        return count * float(np.log(np.mean(self.raw**2) or 1e-300)) + 2.0 * (numbers + 1)
+
+
+STOPPED = "interrupted"
+"""Why a law has no fit where the search or its errors were stopped."""
+PARTS_OF_A_FIT: dict[str, Callable[[FittedLaw], Any]] = {
+    "profiles": lambda law: law.profiles,
+    "blocks left out": lambda law: law.left_out,
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FittedLaws:
+    """Laws fitted to measurements, the best first told: that which foretells blocks left out best.
+
+    measured: what they were fitted to. fitted: a record each law; failed: laws without a fit and why.
+    """
+
+    measured: Measurements
+    fitted: tuple[FittedLaw, ...]
+    failed: dict[str, str] = field(default_factory=dict)
+
+    def complete(self, tell: Callable[[str], None]) -> FittedLaws:
+        """Errors, profiles and what is foretold found now, law by law; an interrupt keeps the laws that are done.
+
+        tell: is told what is being found. Raises KeyboardInterrupt where none is done.
+        """
+        done: list[FittedLaw] = []
+        for each in self.fitted:
+            try:
+                for what, find in PARTS_OF_A_FIT.items():
+                    tell(f"{each.model.words}: {what}")
+                    find(each)
+            except KeyboardInterrupt:
+                if not done:
+                    raise
+                left = self.fitted[len(done) :]
+                return FittedLaws(
+                    self.measured, tuple(done), self.failed | {one.model.label: STOPPED for one in left}
+                )
+            done.append(each)
+        return self
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether laws were left out because of an interrupt."""
+        return STOPPED in self.failed.values()
+
+    @property
+    def best(self) -> FittedLaw:
+        """The law that foretells blocks left out best."""
+        if len(self.fitted) == 1:
+            return self.fitted[0]
+        return min(self.fitted, key=lambda each: each.left_out.rms)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted numbers of the best law."""
+        return self.best.values
+
+    @property
+    def block_errors(self) -> dict[str, float]:
+        """Their standard errors, from blocks."""
+        return self.best.errors(self.best.covariances.by_blocks)
+
+    @property
+    def naive_errors(self) -> dict[str, float]:
+        """Their standard errors if residuals were independent."""
+        return self.best.errors(self.best.covariances.naive)
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Their intervals of 95 %."""
+        return self.best.intervals
+
+    @property
+    def shapes(self) -> dict[str, str]:
+        """Of each profile in a word: bounded, one-sided, flat or multimodal."""
+        return self.best.shapes
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The best law with its fitted numbers."""
+        return self.best.model.at(self.best.found.best.shares)[0]
+
+    @property
+    def scene(self) -> Scene | None:
+        """The scene with the fitted numbers; None for a path of slip."""
+        return self.best.model.at(self.best.found.best.shares)[1]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """A row for each law and number: value, block_error, naive_error, low, high, shape, at_bound."""
+        rows = []
+        for each in self.fitted:
+            block, naive = each.errors(each.covariances.by_blocks), each.errors(each.covariances.naive)
+            for name, bound in zip(each.values, each.on_a_bound, strict=True):
+                low, high = each.intervals[name]
+                row = {"law": each.model.label, "parameter": name, "value": each.values[name]}
+                row |= {"block_error": block[name], "naive_error": naive[name], "low": low, "high": high}
+                rows.append(row | {"shape": each.shapes[name], "at_bound": bound})
+        return pd.DataFrame(rows)
+
+    @property
+    def laws(self) -> pd.DataFrame:
+        """A row for each law: how well it fits and foretells, and how the search went."""
+        rows: list[dict[str, Any]] = [
+            {
+                "law": each.model.label,
+                "rms": each.rms,
+                "chi2_per_degree": each.chi2 / max(len(each.raw) - len(each.model.free), 1),
+                "left_out_rms": each.left_out.rms,
+                "left_out_rms_error": each.left_out.error,
+                "aic": each.aic,
+                "starts_agreeing": each.found.agreeing,
+                "evaluations": each.residuals.evaluations,
+                "status": "ok",
+                "reason": "",
+            }
+            for each in self.fitted
+        ]
+        rows += [{"law": law, "status": "failed", "reason": why} for law, why in self.failed.items()]
+        return pd.DataFrame(rows)
+
+    @property
+    def residuals(self) -> pd.DataFrame:
+        """A row for each law and measured row: measured, fitted, residual (fitted less measured), and the inputs."""
+        parts = [
+            self.measured.table.drop(columns=[self.measured.value]).assign(
+                law=each.model.label, measured=self.measured.values, fitted=each.said, residual=each.raw
+            )
+            for each in self.fitted
+        ]
+        return pd.concat(parts, ignore_index=True)
+
+    @property
+    def sentences(self) -> list[str]:
+        """What was found, for reading."""
+        return [*_which(self), *_how_sure(self), *_what_to_know(self)]
+
+    def plot(self) -> Any:
+        """A matplotlib figure: what was measured, what each law says, what is left, and how that hangs together."""
+        from frictionlab.charts.fits import fit_figure  # with matplotlib, which takes a second
+
+        return fit_figure(self)
+
+    def report(self, path: Any, title: str = "") -> Any:
+        """Write a page with sentences, tables and, beside it, the figure; where it is. Raises SaveError, OSError."""
+        from pathlib import Path
+
+        from frictionlab.charts.fits import draw_fit
+        from frictionlab.report.page import write_fit_page
+
+        draw_fit(self, title, Path(path).parent / "figures")
+        return write_fit_page(self, path, title)
+
+    def __repr__(self) -> str:
+        """Its sentences, a line each."""
+        return "\n".join(self.sentences)
+
+
+def _which(fit: FittedLaws) -> list[str]:
+    best, told = fit.best, []
+    out = f"{with_error(best.left_out.rms, best.left_out.error)} on blocks left out"
+    told.append(f"{best.model.words} fits with an rms of {best.rms:.4g}, {out}")
+    for each in sorted(fit.fitted, key=lambda each: each.left_out.rms):
+        if each is best:
+            continue
+        more, error = each.left_out.apart(best.left_out)
+        fewer = len(each.model.free) < len(best.model.free)
+        if not more > 2.0 * error:
+            what = (
+                "it is simpler: the data do not ask for more" if fewer else "the data do not tell them apart"
+            )
+            told.append(f"{each.model.words} fits as well ({each.left_out.rms:.4g} left out); {what}")
+        else:
+            told.append(f"{each.model.words} fits worse: {each.left_out.rms:.4g} on blocks left out")
+    return told + [f"{law} has no fit: {why}" for law, why in fit.failed.items()]
+
+
+def _how_sure(fit: FittedLaws) -> list[str]:
+    best = fit.best
+    block, naive = fit.block_errors, fit.naive_errors
+    told = [
+        f"{name} = {with_error(value, block[name])} (95 %: {low:.4g} to {high:.4g})"
+        for (name, value), (low, high) in zip(best.values.items(), best.intervals.values(), strict=True)
+    ]
+    ratios = [block[name] / naive[name] for name in block if naive[name] > 0.0]
+    if ratios and max(ratios) > 1.5:
+        told.append(
+            f"errors from {best.blocks.max() + 1} blocks ({best.blocks_from}) are {min(ratios):.2g} to "
+            f"{max(ratios):.2g} times the naive ones: residuals are alike over about "
+            f"{correlation_length(best.raw):.0f} samples, each of which AIC counts as new"
+        )
+    return told
+
+
+def _what_to_know(fit: FittedLaws) -> list[str]:
+    told = []
+    if fit.measured.missing:
+        told.append(f"{fit.measured.missing} samples are missing and were left out")
+    for each in fit.fitted:
+        label, several = each.model.words, "" if len(fit.fitted) == 1 else f"{each.model.words}: "
+        for number, bound in zip(each.model.free, each.on_a_bound, strict=True):
+            if bound:
+                told.append(
+                    f"{several}{number.name} is on an end of its range, {each.values[number.name]:.4g}"
+                )
+        for name, form in each.shapes.items():
+            if form != "bounded":
+                told.append(f"{several}the profile of {name} is {form}")
+        values = np.array([*each.values.values()])
+        slopes = np.array([one.slope(x) for one, x in zip(each.model.free, values, strict=True)])
+        spread = np.outer(slopes, slopes) * each.covariances.by_blocks
+        if values.all() and (
+            seen := unseen_sentence([*each.values], values, spread / np.outer(values, values))
+        ):
+            told.append(f"{several}{seen}")
+        if each.found.others:
+            other = each.found.others[0]
+            at = ", ".join(f"{name} = {x:.4g}" for name, x in each.model.values(other.shares).items())
+            worse = np.sqrt(other.cost / each.found.best.cost) if each.found.best.cost else np.inf
+            told.append(f"{several}another minimum: {at}, rms {worse:.3g} times as large")
+        if each.found.agreeing < 2:
+            told.append(
+                f"{label}: only {each.found.agreeing} of {each.found.starts} starts found this minimum"
+            )
+    return told

@@ -1,1 +1,0 @@
-"""Stability maps: step or tolerance against local rate, true error, and whether a wrong answer says so."""

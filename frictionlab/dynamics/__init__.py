@@ -1,1 +1,0 @@
-"""The equation of motion, the contact, and the events of a motion."""

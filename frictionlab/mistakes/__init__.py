@@ -1,1 +1,0 @@
-"""What is wrong with given values: one sentence for each mistake, in a study and in Python."""

@@ -1,0 +1,691 @@
+"""The equation of motion: what pushes, presses and carries the mass at an instant; slip, acceleration, force at rest.
+
+Every map, march and reading of energies calls these functions. Load, normal load and belt are functions of time here
+and nowhere else: each in its group below, with the rates, bounds and integrals that the time at rest asks for. The
+first of two functions is for a body on which one sine is all that changes in time, the second for one that is
+``varying``, within the piece between two corners that holds. ``body`` may be the numbers of a prescribed slip, too,
+for the belt. Maps follow the deviation (y, u = y') from the body's harmonic reference.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import fast, fast_embedded, inner
+from frictionlab.compile.dispatch import (
+    by_dimension,
+    by_relaxing,
+    by_springs,
+    by_variation,
+    compilable,
+    length,
+)
+from frictionlab.compile.lane_arrays import friction_by_lane
+from frictionlab.compile.stack import items_of
+from frictionlab.motion.events import reference_acceleration
+from frictionlab.motion.relaxing import along_x1, held_back, held_back_curvature, held_back_impulse
+from frictionlab.motion.waves import (
+    number_at,
+    wave_at,
+    wave_bound,
+    wave_impulse,
+    wave_path_integral,
+    wave_rate,
+)
+from frictionlab.scene import body as _plain
+from frictionlab.scene.body import BodyNumbers
+from frictionlab.scene.varying import PER_PIECE, Course, Packed
+
+linear_force = fast(_plain.restoring_force)
+_bent_force = fast(compilable(_plain.bent_force))
+restoring_force = by_springs(_plain.restoring_force, _bent_force)
+"""restoring_force(body, x, v): of springs and dashpots, per unit mass."""
+dissipated = by_springs(
+    lambda body, x, v: linear_force(body, 0.0 * v, v),
+    lambda body, x, v: _bent_force(body, x, v) - _bent_force(body, x, 0.0 * v),
+)
+"""dissipated(body, x, v): of dashpots alone."""
+slopes_at = by_springs(lambda body, x, v: body, _plain.bent_slopes)
+"""slopes_at(body, x, v): the linear body beside this motion, where ``restoring_force`` is that of small changes."""
+span = fast(_plain.span)
+planar = inner(compilable(_plain.in_the_plane))
+"""The body of a mass in the plane."""
+
+
+class Instant(NamedTuple):
+    """A time, with sine and cosine of Omega*tau."""
+
+    tau: float
+    sine: float
+    cosine: float
+
+
+@inner
+def instant_at(body: Any, tau: float) -> Instant:
+    """The instant; a body is whatever has a frequency."""
+    angle = body.frequency * tau
+    return Instant(tau, math.sin(angle), math.cos(angle))
+
+
+START = Instant(0.0, 0.0, 1.0)
+"""tau = 0, where whatever does not change may be asked for."""
+
+
+# --- the load -----------------------------------------------------------------------------------------------------
+
+load = by_variation(
+    lambda body, now: body.load_sine * now.sine + body.load_cosine * now.cosine,
+    lambda body, now: wave_at(body.varying.table, body.varying.load, body.varying.begins, now.tau),
+)
+"""load(body, now): what drives the mass; on the line a number, in the plane x1 + i x2.
+
+Not ``fast``: less what the reference balances it is zero to the last bit where that is all of it."""
+
+
+def _rates_of_one_sine(body: Any, now: Instant) -> Any:
+    """What it is a quarter and half of a period later."""
+    later = Instant(now.tau + 0.5 * math.pi / body.frequency, now.cosine, -now.sine)
+    return body.frequency * load(body, later), -(body.frequency**2) * load(body, now)
+
+
+def _rates_of_waves(body: Any, now: Instant) -> Any:
+    return wave_rate(body.varying.table, body.varying.load, now.tau, 1), wave_rate(
+        body.varying.table, body.varying.load, now.tau, 2
+    )
+
+
+load_rates = by_variation(_rates_of_one_sine, _rates_of_waves)
+"""load_rates(body, now): first and second derivative of the load."""
+
+
+def _curvature_of_one_sine(body: Any) -> float:
+    quarter = Instant(0.5 * math.pi / body.frequency, 1.0, 0.0)
+    return body.frequency**2 * (abs(load(body, quarter)) + abs(load(body, START)))
+
+
+load_curvature = by_variation(
+    _curvature_of_one_sine, lambda body: wave_bound(body.varying.table, body.varying.load, 2)
+)
+"""load_curvature(body): a bound on the second derivative of the load, at any time."""
+
+
+def _impulse_of_one_sine(body: Any, start: float, end: float) -> Any:
+    """Its value half way, less the more of a period is passed."""
+    half_angle = 0.5 * body.frequency * (end - start)
+    mean = math.sin(half_angle) / half_angle if half_angle > 0.0 else 1.0
+    return (end - start) * (mean * load(body, instant_at(body, 0.5 * (start + end))))
+
+
+def _impulse_of_waves(body: Any, start: float, end: float) -> Any:
+    return wave_impulse(body.varying.table, body.varying.load, body.varying.begins, start, end)
+
+
+load_impulse = by_variation(_impulse_of_one_sine, _impulse_of_waves)
+"""load_impulse(body, start, end): the integral of the load."""
+
+
+# --- the normal load ----------------------------------------------------------------------------------------------
+
+
+def _varying_load(body: Any, now: Instant) -> float:
+    return body.normal_load + wave_at(
+        body.varying.table, body.varying.normal_load, body.varying.begins, now.tau
+    )
+
+
+normal_load = by_variation(lambda body, now: body.normal_load, _varying_load)
+"""normal_load(body, now): what presses the mass on the belt: friction is this times its coefficient."""
+
+
+def _varying_share(body: Any, now: Instant) -> float:
+    return (
+        1.0
+        + wave_at(body.varying.table, body.varying.normal_load, body.varying.begins, now.tau)
+        / body.normal_load
+    )
+
+
+load_share = by_variation(lambda body, now: 1.0, _varying_share)
+"""load_share(body, now): the normal load over its mean."""
+
+normal_load_rate = by_variation(
+    lambda body, now: 0.0,
+    lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 1),
+)
+"""normal_load_rate(body, now): its derivative."""
+
+normal_load_bend = by_variation(
+    lambda body, now: 0.0,
+    lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 2),
+)
+"""normal_load_bend(body, now): its second derivative."""
+
+normal_load_curvature = by_variation(
+    lambda body: 0.0, lambda body: wave_bound(body.varying.table, body.varying.normal_load, 2)
+)
+"""normal_load_curvature(body): a bound on its second derivative, at any time."""
+
+
+# --- the belt -----------------------------------------------------------------------------------------------------
+
+
+def _vibrating_speed(body: Any, belt_speed: float, now: Instant) -> Any:
+    return belt_speed + wave_at(body.varying.table, body.varying.belt, body.varying.begins, now.tau)
+
+
+belt_velocity = by_variation(lambda body, belt_speed, now: belt_speed, _vibrating_speed)
+"""belt_velocity(body, belt_speed, now): of the belt; belt_speed: its mean, along x1."""
+
+belt_acceleration = by_variation(
+    lambda body, belt_speed, now: 0.0,
+    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 1),
+)
+"""belt_acceleration(body, belt_speed, now): derivative of its velocity."""
+
+belt_jerk = by_variation(
+    lambda body, belt_speed, now: 0.0,
+    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 2),
+)
+"""belt_jerk(body, belt_speed, now): derivative of its acceleration."""
+
+belt_snap = by_variation(
+    lambda body, belt_speed, now: 0.0,
+    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 3),
+)
+"""belt_snap(body, belt_speed, now): derivative of its jerk."""
+
+
+def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
+    return (end - start) * belt_speed + wave_impulse(
+        body.varying.table, body.varying.belt, body.varying.begins, start, end
+    )
+
+
+belt_path = by_variation(
+    lambda body, belt_speed, start, end: (end - start) * belt_velocity(body, belt_speed, START),
+    _vibrating_path,
+)
+"""belt_path(body, belt_speed, start, end): how far the belt goes between two times of one piece."""
+
+
+def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
+    swung = wave_path_integral(body.varying.table, body.varying.belt, body.varying.begins, start, end)
+    return 0.5 * (end - start) * ((end - start) * belt_speed) + swung
+
+
+belt_path_integral = by_variation(
+    lambda body, belt_speed, start, end: 0.5 * (end - start) * belt_path(body, belt_speed, start, end),
+    _integral_of_vibrating_path,
+)
+"""belt_path_integral(body, belt_speed, start, end): the integral of the way it has gone since the start."""
+
+belt_advance = by_variation(
+    lambda body, belt_speed: belt_path(body, belt_speed, 0.0, span(body)),
+    lambda body, belt_speed: span(body) * belt_speed,
+)
+"""belt_advance(body, belt_speed): how far the belt goes in a span; a vibration leads nowhere."""
+
+belt_swing = by_variation(lambda body: 0.0, lambda body: body.varying.whole.belt_swing)
+"""belt_swing(body): how much faster or slower than its mean the belt goes at most."""
+
+
+# --- pieces between corners ---------------------------------------------------------------------------------------
+
+
+def _pieces_of_a_span(body: Any) -> int:
+    whole = body.varying.whole
+    laps = math.floor(body.periods / whole.periods + 0.5)
+    return laps * whole.pieces
+
+
+pieces_of = by_variation(lambda body: 1, _pieces_of_a_span)
+"""pieces_of(body): how many pieces one span of the body has; within a piece everything is smooth in time."""
+
+
+@inner
+def _edge(varying: Any, k: int) -> float:
+    """When the k-th piece since the start begins."""
+    pieces, first = varying.whole.pieces, varying.whole.edges
+    return k // pieces * varying.table[first + pieces] + varying.table[first + k % pieces]
+
+
+def _piece_between_corners(body: Any, k: int) -> Any:
+    last = k == pieces_of(body) - 1
+    return _edge(body.varying, k), span(body) if last else _edge(body.varying, k + 1)
+
+
+piece_ends = by_variation(lambda body, k: (0.0, span(body)), _piece_between_corners)
+"""piece_ends(body, k): when the k-th piece of a span begins, and when it ends."""
+
+
+@inner
+def _course_on_line(varying: Any, course: Course, place: int) -> Course:
+    """The function on the line whose numbers are there."""
+    value = number_at(varying.table, place, course.value)
+    slope = number_at(varying.table, place + 2, course.value)
+    return Course(course.first, course.terms, value, slope)
+
+
+@inner
+def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
+    """The body with another span, and other functions of time."""
+    return BodyNumbers(
+        body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
+        body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
+        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying, body.bends, body.relaxing,
+    )  # fmt: skip
+
+
+def _body_of_piece(body: BodyNumbers, k: int) -> BodyNumbers:
+    old = body.varying
+    at = old.whole.lines + PER_PIECE * (k % old.whole.pieces)
+    normal = Course(old.normal_load.first, old.normal_load.terms, old.table[at + 8], old.table[at + 9])
+    varying = Packed(
+        old.table,
+        old.whole,
+        _edge(old, k),
+        _course_on_line(old, old.load, at),
+        _course_on_line(old, old.belt, at + 4),
+        normal,
+        old.keeps_stiffness,
+    )
+    return changed(body, body.periods, varying)
+
+
+in_piece = by_variation(lambda body, k: body, _body_of_piece)
+"""in_piece(body, k): the body as the k-th piece of its span has it."""
+
+
+def _body_at(body: BodyNumbers, tau: float) -> BodyNumbers:
+    varying, whole = body.varying, body.varying.whole
+    k = whole.pieces * math.floor(tau / varying.table[whole.edges + whole.pieces])
+    while tau >= _edge(varying, k + 1):
+        k += 1
+    return in_piece(body, k)
+
+
+body_at = by_variation(lambda body, tau: body, _body_at)
+"""body_at(body, tau): the body as the piece at this time has it."""
+
+
+def _with_bare_table(body: Any) -> Any:
+    old = body.varying
+    varying = Packed(
+        items_of(old.table),
+        old.whole,
+        old.begins,
+        old.load,
+        old.belt,
+        old.normal_load,
+        old.keeps_stiffness,
+    )
+    return changed(body, body.periods, varying)
+
+
+bare = by_variation(lambda body: body, _with_bare_table)
+"""bare(body): the body with a bare pointer in the place of the table, which lives as long as what Python holds."""
+
+quickest_of = by_variation(lambda body: body.frequency, lambda body: body.varying.whole.quickest)
+"""quickest_of(body): the highest circular frequency of all that changes in time."""
+
+
+# --- the motion ---------------------------------------------------------------------------------------------------
+
+
+SLIP_ROUNDING = 1e-15
+"""A slip below this share of the velocity it is a difference of is rounding, and has no direction."""
+
+
+@fast
+def slip(body: Any, belt_speed: float, now: Instant, v: Any) -> Any:
+    """Slip velocity: of the mass against the belt."""
+    return v - belt_velocity(body, belt_speed, now)
+
+
+@fast
+def acceleration_under(body: BodyNumbers, push: Any, pressed: float, x: Any, v: Any, rub: Any) -> Any:
+    """Acceleration of the mass under a load and a normal load that are known; rub: coefficient of friction."""
+    return push - restoring_force(body, x, v) - pressed * rub
+
+
+@fast
+def acceleration(body: BodyNumbers, now: Instant, x: Any, v: Any, rub: Any) -> Any:
+    """Acceleration of the mass; rub: coefficient of friction."""
+    return acceleration_under(body, load(body, now), normal_load(body, now), x, v, rub)
+
+
+@inner
+def mean_friction(impulse: Any, time: float) -> Any:
+    """The mean coefficient, positive where the belt drags the mass along x1, from the integral of what resists."""
+    return -impulse / time
+
+
+# --- the mass at rest on the belt ---------------------------------------------------------------------------------
+
+
+@inner
+def _held_by_friction(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
+    carried = belt_velocity(body, belt_speed, now) + 0.0 * x
+    pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
+    jerk = belt_jerk(body, belt_speed, now) + 0.0 * x
+    rate, bend = load_rates(body, now)
+    beside = slopes_at(body, x, carried)
+    bend = bend - _turning(body, x, carried, pushed)
+    return (
+        load(body, now) - restoring_force(body, x, carried) - pushed,
+        rate - restoring_force(beside, carried, pushed) - jerk,
+        bend - restoring_force(beside, pushed, jerk) - belt_snap(body, belt_speed, now),
+    )
+
+
+def _held_against_relaxing(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
+    held, rate, bend = _held_by_friction(body, belt_speed, now, x)
+    carried, pushed = belt_velocity(body, belt_speed, now), belt_acceleration(body, belt_speed, now)
+    force, rise, turn = held_back(body, belt_speed, now.tau, carried.real, pushed.real)
+    return held - along_x1(force, x), rate - along_x1(rise, x), bend - along_x1(turn, x)
+
+
+holding_force = by_relaxing(
+    lambda body, belt_speed, now, x: _held_by_friction(body, belt_speed, now, x), _held_against_relaxing
+)
+"""holding_force(body, belt_speed, now, x): the force of friction that keeps a mass at x with the belt, its rate and
+the rate of that."""
+
+_belt_bound = by_variation(
+    lambda body, order: 0.0, lambda body, order: wave_bound(body.varying.table, body.varying.belt, order)
+)
+"""_belt_bound(body, order): on this derivative of the belt's velocity, at any time."""
+
+
+def _turning_of_bends(body: BodyNumbers, x: Any, v: Any, a: Any) -> Any:
+    x1, v1, bends = x.real, v.real, body.bends
+    spring = 2.0 * bends.spring_2 + 6.0 * bends.spring_3 * x1 + 2.0 * bends.dashpot_2 * v1
+    return (spring * v1 + 2.0 * (bends.dashpot_1 + 2.0 * bends.dashpot_2 * x1) * a.real) * v1
+
+
+_turning = by_springs(lambda body, x, v, a: 0.0, _turning_of_bends)
+"""_turning(body, x, v, a): second derivative of the restoring force of a motion along which slopes do not change."""
+
+look_ahead = by_springs(lambda body: 1e300, lambda body: 0.25 / quickest_of(body))
+"""look_ahead(body): the time at rest within which ``holding_curvature`` at a position holds."""
+
+
+def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
+    """By the largest sizes of position, velocity and its derivatives within the time that is looked ahead."""
+    bends, v = body.bends, abs(belt_speed) + belt_swing(body)
+    most, a, jerk = abs(x.real) + v * look_ahead(body), _belt_bound(body, 1), _belt_bound(body, 2)
+    first, second = abs(bends.dashpot_1), abs(bends.dashpot_2)
+    spring_2, spring_3 = abs(bends.spring_2), abs(bends.spring_3)
+    turning = (2.0 * spring_2 + 6.0 * spring_3 * most + 2.0 * second * v) * v
+    turning = (turning + 2.0 * (first + 2.0 * second * most) * a) * v
+    by_spring = (2.0 * spring_2 + 3.0 * spring_3 * most) * most + (first + 2.0 * second * most) * v
+    return turning + by_spring * a + (first + second * most) * most * jerk
+
+
+_more = by_springs(lambda body, belt_speed, x: 0.0, _more_of_bends)
+
+
+def _bound_of_relaxing(body: BodyNumbers, belt_speed: float) -> float:
+    velocity = belt_velocity(body, belt_speed, instant_at(body, body.relaxing.since)).real
+    return held_back_curvature(body, velocity, _belt_bound(body, 1))
+
+
+_curvature_of_relaxing = by_relaxing(lambda body, belt_speed: 0.0, _bound_of_relaxing)
+
+
+@inner
+def holding_curvature(body: BodyNumbers, belt_speed: float, x: Any) -> float:
+    """A bound on the second derivative of that force, of a mass that is at x now, when relaxing forces are known."""
+    springs = (body.stiffness_mean + abs(body.stiffness_split)) * _belt_bound(body, 1)
+    dashpots = (body.damping_mean + abs(body.damping_split)) * _belt_bound(body, 2)
+    relaxing = _curvature_of_relaxing(body, belt_speed)
+    return (
+        load_curvature(body)
+        + springs
+        + dashpots
+        + _belt_bound(body, 3)
+        + _more(body, belt_speed, x)
+        + relaxing
+    )
+
+
+GAUSS = np.array([0.0, 0.5384693101056831, 0.906179845938664])
+GAUSS_WEIGHTS = np.array([0.5688888888888889, 0.47862867049936647, 0.23692688505618908])
+"""Of five nodes, those from the middle on."""
+
+
+@inner
+def _bent_spring(body: BodyNumbers, belt_speed: float, start: float, tau: float, x: Any) -> float:
+    x1 = (x + belt_path(body, belt_speed, start, tau)).real
+    return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 * x1
+
+
+def _impulse_of_bends(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
+    """Dashpots by the way, springs by Gauss: exact on a belt that does not vibrate, else to rounding."""
+    bends, first, last = body.bends, x.real, (x + belt_path(body, belt_speed, start, end)).real
+    half, third = 0.5 * bends.dashpot_1, bends.dashpot_2 / 3.0
+    impulse = (half + third * last) * last * last - (half + third * first) * first * first
+    parts = _parts(body, end - start)
+    step = 0.5 * (end - start) / parts
+    for k in range(parts):
+        middle = start + (2 * k + 1) * step
+        for i in range(GAUSS.size):
+            share = GAUSS_WEIGHTS[i] * step * (0.5 if i == 0 else 1.0)
+            for side in (-1.0, 1.0):
+                impulse += share * _bent_spring(body, belt_speed, start, middle + side * GAUSS[i] * step, x)
+    return impulse
+
+
+_parts = by_variation(lambda body, lasts: 1, lambda body, lasts: 1 + int(8.0 * quickest_of(body) * lasts))
+_bent_impulse = by_springs(lambda body, belt_speed, start, end, x: 0.0 * x, _impulse_of_bends)
+"""_bent_impulse(body, belt_speed, start, end, x): the integral of what bends add to the restoring force."""
+
+
+@inner
+def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
+    """Integral of that force; x at the start."""
+    way = belt_path(body, belt_speed, start, end) + 0.0 * x
+    positions = (end - start) * x + belt_path_integral(body, belt_speed, start, end)
+    first, last = instant_at(body, start), instant_at(body, end)
+    gained = belt_velocity(body, belt_speed, last) - belt_velocity(body, belt_speed, first)
+    springs = linear_force(body, positions, way) + _bent_impulse(body, belt_speed, start, end, x)
+    relaxing = held_back_impulse(body, belt_speed, start, end, way.real)
+    return load_impulse(body, start, end) - springs - gained - along_x1(relaxing, x)
+
+
+@inner
+def resting_friction(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
+    """Integral of friction at rest, in shares of the mean normal load."""
+    return holding_impulse(body, belt_speed, start, end, x) / body.normal_load
+
+
+# --- the deviation from the friction-free response ----------------------------------------------------------------
+
+
+class Flow(NamedTuple):
+    """A law and a body on a belt; the side of slip on the line; sine and cosine at the anchor time."""
+
+    law: Any
+    body: BodyNumbers
+    belt_speed: float
+    side: float
+    anchor: float
+    sine: float
+    cosine: float
+
+
+@fast
+def turned(problem: Any, tau: float) -> Any:
+    """Sine and cosine of Omega*tau from those at the anchor, at most one radian away (Taylor, to rounding)."""
+    angle = problem.body.frequency * (tau - problem.anchor)
+    q = angle * angle
+    cosine = 1.0 - q / 2.0 * (
+        1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0 * (1.0 - q / 132.0 * (
+            1.0 - q / 182.0 * (1.0 - q / 240.0 * (1.0 - q / 306.0)))))))
+    )  # fmt: skip
+    sine = angle * (
+        1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0 * (
+            1.0 - q / 156.0 * (1.0 - q / 210.0 * (1.0 - q / 272.0)))))))
+    )  # fmt: skip
+    return (
+        problem.sine * cosine + problem.cosine * sine,
+        problem.cosine * cosine - problem.sine * sine,
+    )
+
+
+@fast
+def instant_near(problem: Any, tau: float) -> Instant:
+    """The instant, at most one radian from the anchor of the problem."""
+    sine, cosine = turned(problem, tau)
+    return Instant(tau, sine, cosine)
+
+
+@inner
+def anchored(law: Any, body: BodyNumbers, belt_speed: float, side: float, tau: float) -> Flow:
+    """The problem with its anchor at this time."""
+    angle = body.frequency * tau
+    return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
+
+
+@inner
+def reference_position(body: BodyNumbers, tau: float) -> Any:
+    """Of the friction-free response."""
+    angle = body.frequency * tau
+    return body.reference_sine * math.sin(angle) + body.reference_cosine * math.cos(angle)
+
+
+@fast
+def reference_velocity(body: BodyNumbers, sine: float, cosine: float) -> Any:
+    """Its derivative."""
+    return body.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
+
+
+free_sine = by_springs(lambda body: body.reference_sine, lambda body: body.reference_sine + body.bends.sine)
+free_cosine = by_springs(
+    lambda body: body.reference_cosine, lambda body: body.reference_cosine + body.bends.cosine
+)
+"""free_sine(body), free_cosine(body): of the motion without friction, about where bodies are not linear."""
+
+
+@inner
+def swing_of(body: BodyNumbers) -> float:
+    """The speed of the friction-free response against the belt's mean; 1 where it has no bound."""
+    swing = body.frequency * math.hypot(abs(free_sine(body)), abs(free_cosine(body))) + belt_swing(body)
+    return swing if swing > 0.0 else 1.0
+
+
+def _pushed_away(body: BodyNumbers, x: Any) -> bool:
+    """Where springs push outward with a million times the force by which the linear one would pull back."""
+    x1 = x.real
+    return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 < -1e6 * body.stiffness_mean
+
+
+runs_away = by_springs(lambda body, x: False, _pushed_away)
+"""runs_away(body, x): whether a mass there never comes back."""
+
+
+def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
+    """On the side on which springs stretch to hold the force, the first place where there are several."""
+    missing = force - linear_force(body, 0.0, v)
+    side, low = math.copysign(1.0, missing), 0.0
+    high = abs(missing) / (body.stiffness_mean + body.stiffness_split)
+    for _ in range(120):
+        if side * (restoring_force(body, side * high, v).real - force) >= 0.0:
+            break
+        low, high = high, 1.25 * high + 1e-300
+    x = high
+    for _ in range(100):
+        beyond = side * (restoring_force(body, side * x, v).real - force)
+        low, high = (low, x) if beyond >= 0.0 else (x, high)
+        slopes = slopes_at(body, side * x, v)
+        slope = slopes.stiffness_mean + slopes.stiffness_split
+        trial = x - beyond / slope if slope > 0.0 else low
+        trial = trial if low < trial < high else 0.5 * (low + high)
+        if abs(trial - x) <= 2e-16 * x:
+            break
+        x = trial
+    return side * x
+
+
+def _linear_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
+    held = force - (body.damping_mean + body.damping_split) * v
+    return held / (body.stiffness_mean + body.stiffness_split)
+
+
+equilibrium = by_springs(_linear_equilibrium, _bent_equilibrium)
+"""equilibrium(body, force, v): where springs along x1, and dashpots at this velocity, hold a force."""
+
+
+@inner
+def balanced_load(body: BodyNumbers, now: Instant) -> Any:
+    """The force that the reference motion takes."""
+    return body.balanced_sine * now.sine + body.balanced_cosine * now.cosine
+
+
+@fast
+def unbalanced_load(body: BodyNumbers, now: Instant) -> Any:
+    """What of the load drives the deviation."""
+    return load(body, now) - balanced_load(body, now)
+
+
+@inner
+def unbalanced_rate(body: BodyNumbers, now: Instant) -> Any:
+    """Its derivative."""
+    rate, _bend = load_rates(body, now)
+    return rate - body.frequency * (body.balanced_sine * now.cosine - body.balanced_cosine * now.sine)
+
+
+@fast
+def deviation_acceleration(body: BodyNumbers, now: Instant, y: Any, u: Any, rub: Any) -> Any:
+    """Acceleration of the deviation; rub: coefficient of friction."""
+    return acceleration_under(body, unbalanced_load(body, now), normal_load(body, now), y, u, rub)
+
+
+@fast
+def deviation_slip(problem: Any, now: Instant, u: Any) -> Any:
+    """Slip velocity of a mass whose deviation has this velocity."""
+    v = u + reference_velocity(problem.body, now.sine, now.cosine)
+    return slip(problem.body, problem.belt_speed, now, v)
+
+
+@fast
+def deviation_slip_rate(problem: Any, now: Instant, a: Any) -> Any:
+    """Derivative of slip where the deviation has this acceleration."""
+    rate = a + reference_acceleration(problem.body, now.sine, now.cosine)
+    return rate - belt_acceleration(problem.body, problem.belt_speed, now)
+
+
+def _friction_in_lanes(problem: Flow, w: Any) -> Any:
+    """Of a law whose vector is that of ``FrictionLaw``: along the slip."""
+    speed = length(w)
+    return (friction_by_lane(problem.law, speed) / speed) * w
+
+
+_friction = by_dimension(
+    lambda problem, w: problem.side * problem.law.sliding_friction(max(problem.side * w, 0.0)),
+    lambda problem, w: problem.law.sliding_vector(w),
+    _friction_in_lanes,
+)
+
+
+@fast_embedded
+def rates(problem: Flow, tau: float, y: Any, u: Any) -> Any:
+    """Acceleration of the deviation, and friction of a law without memory in shares of the mean normal load."""
+    now = instant_near(problem, tau)
+    rub = _friction(problem, deviation_slip(problem, now, u))
+    return deviation_acceleration(problem.body, now, y, u, rub), load_share(problem.body, now) * rub
+
+
+@fast
+def slip_at(problem: Any, tau: float, u: Any) -> Any:
+    """Slip velocity near the anchor of a problem; u: velocity of the deviation."""
+    return deviation_slip(problem, instant_near(problem, tau), u)
+
+
+@fast
+def slip_rate(problem: Any, tau: float, a: Any) -> Any:
+    """Its derivative; a: acceleration of the deviation."""
+    return deviation_slip_rate(problem, instant_near(problem, tau), a)

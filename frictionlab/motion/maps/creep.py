@@ -1,0 +1,184 @@
+"""Steps in the logarithm of a slip that creeps.
+
+Friction by scalars may grow as asinh(slip/scale) with a scale of 1e-40 of the belt speed: a contact that seems at
+rest creeps, and how fast goes exponentially with the force on it. In w = scale sinh(q) that friction is linear in q,
+in the plane along q, and a linearly implicit step over a creep is as long as over anything linear. A step that starts
+at so slow a slip takes, in the place of w, the number w0 + J0 (q - q0), with J = dw/dq: at its start that is the slip
+and goes as fast, so that all blocks of the step are those of w itself. That J changes within the step is left to its
+error: slower than ``BELOW`` of the accuracy, slip is known well enough by far.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, by_scalars, length
+from frictionlab.motion.equation import Flow, instant_near, normal_load
+from frictionlab.motion.maps.rates import U, Work, friction_in_mode
+
+BELOW = 30.0
+"""Of the accuracy: a slip slower than that is followed by its logarithm."""
+WITHOUT_INERTIA = 3e-4
+"""Of that: from a slip slower than this to one as slow nothing is left of inertia."""
+HALVES = 4.3
+"""Where asinh is half of what its slope at zero makes of it."""
+CLOSE = 0.1
+"""By how much the logarithm of such a slip may be in error: within the accuracy all slips look the same."""
+SLOWEST = -150.0
+"""Decimal logarithm of the slowest slip that is told from none: kernels take squares of it."""
+FASTEST = 1e30
+"""Of a slip: a stage that is faster is as wrong."""
+SCALE, SLOW = 0, 1
+"""Places in ``Work.creep``: the scale, 0 where a step takes slip as it is; how slow a slip creeps."""
+
+
+def _stays_quick(flow: Flow, w: Any, a: Any, work: Work) -> None:
+    """Nothing but scalars is steep enough."""
+
+
+def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
+    law, slow = flow.law, work.creep[SLOW]
+    work.creep[SCALE] = 0.0
+    far = length(w)
+    if far >= slow:
+        return
+    along = w / far if far > 0.0 else 1.0 + 0.0 * w
+    low, high = SLOWEST, math.log10(slow)
+    slope = length(friction_in_mode(law, work, 10.0**low * along)) * 10.0**-low
+    while high - low > 0.1:
+        middle = 0.5 * (low + high)
+        if length(friction_in_mode(law, work, 10.0**middle * along)) < 0.5 * slope * 10.0**middle:
+            high = middle
+        else:
+            low = middle
+    if high >= math.log10(slow):
+        return
+    work.creep[SCALE] = 10.0**high / HALVES
+    pull = friction_in_mode(law, work, w) + a / normal_load(flow.body, instant_near(flow, flow.anchor))
+    crawl = WITHOUT_INERTIA * slow
+    if far < crawl and length(pull) >= length(friction_in_mode(law, work, crawl * along)):
+        # what is pulled harder than a crawl resists sets off
+        work.start[U] = (2.0 * crawl / length(pull)) * pull
+
+
+note_creep = by_scalars(_stays_quick, _may_creep)
+"""note_creep(flow, w, a, work): whether a step from slip w, which goes at the rate a, takes its logarithm, and on
+which scale; ``work.memory`` is that at the start."""
+
+
+creeps = by_scalars(lambda law, work: False, lambda law, work: work.creep[SCALE] > 0.0)
+"""creeps(law, work): whether a step from ``work.start`` takes the logarithm of slip.
+
+Slip then changes much sooner than any step sees, and friction with it. By the balance of momentum friction's
+impulse is that of the forces that pull, less what slip has gained: that is followed in its place.
+"""
+
+
+@inner
+def _weightless(work: Work) -> bool:
+    return work.creep[SCALE] == 0.0 or length(work.start[U]) < WITHOUT_INERTIA * work.creep[SLOW]
+
+
+@inner
+def _while_slow(law: Any, work: Work, a: Any) -> float:
+    return math.inf if _weightless(work) else 2.0 * length(work.start[U]) / (length(a) + 1e-300)
+
+
+longest_while_slow = by_scalars(lambda law, work, a: math.inf, lambda law, work, a: _while_slow(law, work, a))
+"""longest_while_slow(law, work, a): the longest step worth a trial from a slow slip that goes at the rate a."""
+
+
+# --- w = scale sinh(q) along q, and J -------------------------------------------------------------------------------
+
+
+@inner
+def _logarithm(w: Any, scale: float) -> Any:
+    far = length(w)
+    return (math.asinh(far / scale) / far) * w if far > 0.0 else 0.0 * w
+
+
+@inner
+def _slip(q: Any, scale: float) -> Any:
+    far = length(q)
+    return (scale * math.sinh(min(far, math.asinh(FASTEST / scale))) / far) * q if far > 0.0 else 0.0 * q
+
+
+@inner
+def _stretch_along(w: Any, scale: float) -> float:
+    return math.hypot(scale, length(w))
+
+
+def _stretched_in_the_plane(w: complex, scale: float, way: complex) -> complex:
+    far = length(w)
+    if far == 0.0:
+        return scale * way
+    turned = way * w.conjugate() / far
+    across = far / math.asinh(far / scale)
+    return complex(_stretch_along(w, scale) * turned.real, across * turned.imag) * w / far
+
+
+def _shrunk_in_the_plane(w: complex, scale: float, way: complex) -> complex:
+    far = length(w)
+    if far == 0.0:
+        return way / scale
+    turned = way * w.conjugate() / far
+    across = far / math.asinh(far / scale)
+    return complex(turned.real / _stretch_along(w, scale), turned.imag / across) * w / far
+
+
+_stretched = by_dimension(lambda w, scale, way: _stretch_along(w, scale) * way, _stretched_in_the_plane)
+"""_stretched(w, scale, way): J(w) of a way of q."""
+_shrunk = by_dimension(lambda w, scale, way: way / _stretch_along(w, scale), _shrunk_in_the_plane)
+"""_shrunk(w, scale, way): the way of q that J(w) makes this of."""
+
+
+# --- what a step takes ----------------------------------------------------------------------------------------------
+
+
+@inner
+def _taken(work: Work, w: Any) -> Any:
+    scale, start = work.creep[SCALE], work.start[U]
+    if scale == 0.0:
+        return w
+    return start + _stretched(start, scale, _logarithm(w, scale) - _logarithm(start, scale))
+
+
+@inner
+def _told(work: Work, p: Any) -> Any:
+    scale, start = work.creep[SCALE], work.start[U]
+    if scale == 0.0:
+        return p
+    return _slip(_logarithm(start, scale) + _shrunk(start, scale, p - start), scale)
+
+
+@inner
+def _rate_taken(work: Work, w: Any, a: Any) -> Any:
+    scale, start = work.creep[SCALE], work.start[U]
+    return a if _weightless(work) else _stretched(start, scale, _shrunk(w, scale, a))
+
+
+@inner
+def _error_told(work: Work, error: Any) -> float:
+    scale, start, end, most = work.creep[SCALE], work.start[U], work.end[U], length(error)
+    if scale == 0.0:
+        return most
+    lengthens = _shrunk(start, scale, error)
+    ends = length(_stretched(end, scale, lengthens))
+    if _weightless(work):
+        return max(ends, 0.1 * length(end) / (BELOW * WITHOUT_INERTIA))
+    # a slip that comes to creep loses its speed on the way, and what of that is in error counts
+    return max(ends, most, work.creep[SLOW] / (BELOW * CLOSE) * length(lengthens))
+
+
+velocity_taken = by_scalars(lambda law, work, w: w, lambda law, work, w: _taken(work, w))
+"""velocity_taken(law, work, w): what a step from ``work.start`` takes in the place of a velocity held."""
+velocity_told = by_scalars(lambda law, work, p: p, lambda law, work, p: _told(work, p))
+"""velocity_told(law, work, p): the other way round."""
+rate_taken = by_scalars(lambda law, work, w, a: a, lambda law, work, w, a: _rate_taken(work, w, a))
+"""rate_taken(law, work, w, a): its rate where the velocity held is w and goes at the rate a."""
+error_told = by_scalars(
+    lambda law, work, error: length(error), lambda law, work, error: _error_told(work, error)
+)
+"""error_told(law, work, error): how far the velocity at ``work.end`` is off, from the error of what the step took."""

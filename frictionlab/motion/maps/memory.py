@@ -1,0 +1,379 @@
+"""The period map of laws with memory, of one bristle or any: mass and memory together by Rodas5P.
+
+However stiff the contact, steps follow the motion. A step ends where a deflection meets or leaves its yield surface
+or begins to be unloaded and, on the line, where slip reverses; between such events everything is smooth. Scalars have
+no events: steps are as short as friction near rest is steep. Where the slip is prescribed, friction moves nothing and
+only the memory is followed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
+from frictionlab.compile.stack import count_of
+from frictionlab.motion.equation import (
+    Flow,
+    anchored,
+    belt_path,
+    instant_at,
+    instant_near,
+    load_share,
+    piece_ends,
+    pieces_of,
+    quickest_of,
+    runs_away,
+    swing_of,
+)
+from frictionlab.motion.events import dips
+from frictionlab.motion.maps.case import Case, Stepping, case_in_piece, keep_step
+from frictionlab.motion.maps.creep import BELOW, SLOW, creeps, longest_while_slow, note_creep
+from frictionlab.motion.maps.linearization import linearize
+from frictionlab.motion.maps.modes import (
+    OPEN,
+    begin,
+    change,
+    hidden,
+    locate,
+    lowest,
+    note_guards,
+    rates_at_end,
+    restore,
+)
+from frictionlab.motion.maps.rates import (
+    IMPULSE,
+    MEMORY,
+    SMOOTH,
+    U,
+    Work,
+    Y,
+    deviation_held,
+    fill_rates,
+    held_velocity,
+    rows_of,
+    velocity_held,
+)
+from frictionlab.motion.maps.sliding import MOST_STEPS, Mapped
+from frictionlab.motion.maps.step import bend, step, within_step
+from frictionlab.motion.orbit.recorder import panel_writer
+from frictionlab.motion.steppers.step import growth_factor, longest_step
+from frictionlab.scene.body import BodyNumbers
+
+COARSEST = 1e-4
+"""Of a step, per unit of friction impulse in a radian: what is coarser jumps over reversals."""
+
+
+def _at_rest(law: Any, body: BodyNumbers) -> float:
+    return law.sliding_friction(0.0)
+
+
+usual_friction = by_law(_at_rest, _at_rest, lambda law, body: law.sliding_friction(swing_of(body)))
+"""usual_friction(law, body): the coefficient of steady sliding that accuracies are measured by."""
+
+
+@inner
+def coarsest(law: Any, body: BodyNumbers) -> float:
+    """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
+    return COARSEST * body.normal_load * usual_friction(law, body) / quickest_of(body)
+
+
+OF_EVENTS = 1e-9
+"""Accuracy by which events are found where steps are to be repeated, for what is left is divided by a small shift.
+
+Not so fine that rounding decides on which side of an event a step ends.
+"""
+LAYER = 40.0
+"""Bristle lengths slid since a reversal after which its layer is over."""
+
+
+@inner
+def _while_into(part: float, flow: Flow, h: float, work: Work, like: Any) -> Any:
+    """A while into the last step, of h."""
+    body, now = flow.body, instant_near(flow, flow.anchor + part)
+    within_step(flow, part / h, work)
+    y, u = work.stage[Y], work.stage[U]
+    fill_rates(flow, now, work, like)
+    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, velocity_held(flow, now, u), work.rates[IMPULSE]
+
+
+_note = panel_writer(_while_into)
+
+_side = by_dimension(
+    # the direction in which slip goes on
+    lambda w, a: 1.0 if w > 0.0 or (w == 0.0 and a >= 0.0) else -1.0,
+    lambda w, a: 1.0,
+)
+
+_guarded = by_dimension(
+    # on the line the guard of slip sees to it
+    lambda node, w, a, h, like: False,
+    lambda node, w, a, h, like: dips(node.w, node.a, w, a, h),
+)
+_unguarded = by_dimension(
+    lambda node, w, a, h, like: node.w * w > 0.0 and dips(node.w, node.a, w, a, h),
+    lambda node, w, a, h, like: dips(node.w, node.a, w, a, h),
+)
+
+_dip = by_scalars(
+    lambda law, node, w, a, h, like: _guarded(node, w, a, h, like),
+    lambda law, node, w, a, h, like: _unguarded(node, w, a, h, like),
+)
+"""Whether slip comes much closer to rest within a step from a node than at its ends."""
+
+
+def _position_on_the_line(flow: Flow, y: float) -> float:
+    """Of the mass against the belt, at the anchor; of use for differences within a piece."""
+    body = flow.body
+    swung = body.reference_sine * flow.sine + body.reference_cosine * flow.cosine
+    return y + swung - belt_path(body, flow.belt_speed, 0.0, flow.anchor)
+
+
+_position = by_dimension(
+    _position_on_the_line,
+    # only on the line does a reversal begin a layer
+    lambda flow, y: 0.0,
+)
+
+
+def _layer_on_the_line(work: Work, covered: float, share: float, a: float, w: float) -> float:
+    """The longest step that adds no more than this share to the way since a reversal, or to the bristle's length.
+
+    Behind a reversal a bristle bends over in a short layer, which an L-stable step might pass unseen.
+    """
+    size = work.size[0]
+    if work.mode[0] != SMOOTH or covered >= LAYER * size:
+        return OPEN
+    ahead = share * max(size, covered)
+    return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(a) * ahead) + 1e-300)
+
+
+_layer = by_dimension(_layer_on_the_line, lambda work, covered, share, a, w: OPEN)
+
+
+@inner
+def _at_start(flow: Flow, work: Work, like: Any) -> Any:
+    """Slip and its rate where the step starts."""
+    for row in range(rows_of(flow)):
+        work.end[row] = work.start[row]
+    return rates_at_end(flow, flow.anchor, work, like)
+
+
+@inner
+def _flow_of(case: Case, tau: float, work: Work) -> Flow:
+    """The flow at this time with the modes and the side that the state in ``work.start`` has."""
+    flow = anchored(case.law, case.body, case.belt_speed, 1.0, tau)
+    # the side of slip is needed for the rates, and they for the side of a slip that is zero
+    w, a = _at_start(flow, work, case.like)
+    begin(flow, a, w, work)
+    return anchored(case.law, case.body, case.belt_speed, _side(w, a), tau)
+
+
+class MemoryNode(NamedTuple):
+    """Where a step starts: slip and its rate, and whether an event has just been passed."""
+
+    tau: float
+    w: Any
+    a: Any
+    leaving: bool
+
+
+class MemoryStep(NamedTuple):
+    """The step to take, whether it has to be tried first, and whether it ends at an event."""
+
+    h: float
+    repeats: bool
+    ends: bool
+
+
+@inner
+def _end_of_step(
+    flow: Flow, node: MemoryNode, h: float, accuracy: float, work: Work, like: Any
+) -> MemoryStep:
+    """What becomes of a step of h that is accurate enough."""
+    w, a = rates_at_end(flow, node.tau + h, work, like)
+    # the step ends at the first event in it, wherever in the step that is
+    guard = lowest(flow, w, a, work)
+    if guard.value <= 0.0:
+        # just behind an event a guard is zero to rounding: a step must first get away from it, or never does
+        stays = node.leaving and work.guards[2 * guard.number] <= -1e-3 * guard.value
+        if stays and h * flow.body.frequency > 1e-12:
+            return MemoryStep(0.25 * h, True, False)
+        return MemoryStep(locate(flow, node.tau, h, accuracy, work, like), False, True)
+    if node.leaving:
+        return MemoryStep(h, False, False)
+    # between two ends without events a guard may have passed zero twice, or slip come close to rest
+    shorter = hidden(flow, h, w, a, work)
+    if shorter == h and min(length(node.w), length(w)) > 10.0 * accuracy:
+        shorter = 0.5 * h if _dip(flow.law, node, w, a, h, like) else h
+    return MemoryStep(shorter, shorter < h, False)
+
+
+@inner
+def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> MemoryNode:
+    """Get ready for steps from ``work.start``, at the anchor of the flow."""
+    # guards at the start, to be compared with those at the end, and the blocks of all stages
+    w, a = _at_start(flow, work, like)
+    note_guards(flow, w, a, work)
+    note_creep(flow, w, a, work)
+    linearize(flow, flow.anchor, work, like)
+    return MemoryNode(flow.anchor, w, a, leaving)
+
+
+@inner
+def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
+    """Let the end of a step be the start of the next; returns the side of slip there."""
+    side = flow.side
+    if ends:
+        w, a = rates_at_end(flow, tau, work, like)
+        side = change(flow, w, a, work)
+    for row in range(rows_of(flow)):
+        work.start[row] = work.end[row]
+    restore(flow, work)
+    if flow.body.prescribed:  # the reference is the motion: no error of a step adds up
+        work.start[Y] = 0.0 * like
+        work.start[U] = held_velocity(flow, instant_near(flow, tau), 0.0 * like)
+    return side
+
+
+@inner
+def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
+    """The motion from ``work.start``, and back into it, until ``end``, all between two corners of what changes in
+    time; returns the smallest slip speed and the steps.
+
+    Steps are -1 where it gave up.
+    """
+    law, body, belt_speed = flow.law, flow.body, flow.belt_speed
+    accuracy, track, pace = how.accuracy, how.track, how.pace
+    friction = usual_friction(law, body)
+    longest = longest_step(body, friction, accuracy)
+    began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
+    node, h, steps = _depart(flow, True, work, like), 0.1 * longest, 0
+    closest = length(node.w)
+    while end - node.tau > 4e-15 * end:
+        h = min(h, longest, end - node.tau, longest_while_slow(law, work, node.a))
+        # one step: too inaccurate, it is repeated shorter
+        growth = growth_factor(step(flow, node.tau, h, work, like) / accuracy, 5.0)
+        steps += 1
+        if steps > MOST_STEPS or runs_away(body, work.start[Y]):
+            return closest, -1
+        if growth < 1.0:
+            h = h * growth
+            continue
+        # an event cuts a step short, but says nothing about how long the next may be
+        usual, tried = h * growth, h
+        within = min(accuracy, OF_EVENTS) if pace.lengths.size > 0 else accuracy
+        ending = _end_of_step(flow, node, h, within, work, like)
+        h = ending.h
+        if ending.repeats:
+            continue
+        tau = node.tau + h if end - node.tau > h else end
+        # a step to the end goes there whenever it is repeated
+        keep_step(pace, OPEN if tau == end and not ending.ends else tried, 1 if ending.ends else 0)
+        if track.stick.size > 0:
+            bend(flow, work)
+            _note(track, node.tau, h, False, flow, h, work, like)
+        # sine and cosine within a step are expanded about its start
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, like), tau)
+        node = _depart(flow, ending.ends, work, like)
+        closest = min(closest, length(node.w))
+        # a reversal begins a layer, where steps grow with the way; none is known behind the start of the span
+        began = _position(flow, work.start[Y]) if ending.ends else began
+        h = min(
+            usual,
+            _layer(work, abs(_position(flow, work.start[Y]) - began), share, node.a, node.w),
+        )
+    return closest, steps
+
+
+@inner
+def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, like: Any) -> int:
+    """The motion from ``work.start``, and back into it, until ``end`` by the steps of another motion close by.
+
+    first: the number of the first of them. Steps end at the events of their own motion: the numbers at the end are
+    then a smooth function of those at the start. Returns the number of the step after the last; -1 where the events
+    are not those of the other motion.
+    """
+    law, body, belt_speed = flow.law, flow.body, flow.belt_speed
+    pace, within = how.pace, min(how.accuracy, OF_EVENTS)
+    last, tau = pace.taken[0] - 1, flow.anchor
+    _depart(flow, True, work, like)
+    for k in range(first, last + 1):
+        if creeps(law, work):  # how long a slip takes to come to creep is not seen by steps of another motion
+            return -1
+        # where events come earlier or later, the last step makes up for it
+        h = end - tau if k == last else min(pace.lengths[k], end - tau)
+        step(flow, tau, h, work, like)
+        w, a = rates_at_end(flow, tau + h, work, like)
+        if (lowest(flow, w, a, work).value <= 0.0) != (pace.endings[k] == 1):
+            return -1
+        if pace.endings[k] == 1:
+            h = locate(flow, tau, h, within, work, like)
+        tau = tau + h if end - tau > h else end
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, like), tau)
+        if end - tau <= 4e-15 * end:
+            return k + 1
+        _depart(flow, pace.endings[k] == 1, work, like)
+    return -1
+
+
+@inner
+def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
+    """The deflection stays, and its part of the new load changes; beyond yield it springs back at once."""
+    for k in range(count_of(law)):
+        z = (before / after) * work.start[MEMORY + k]
+        far = length(z)
+        beyond = work.radius[k] > 0.0 and far > work.radius[k]
+        work.start[MEMORY + k] = (work.radius[k] / far) * z if beyond else z
+
+
+_over_jump = by_contact(
+    # a deflection is what it is under any load
+    lambda work, law, before, after: None,
+    _per_new_share,
+)
+"""_over_jump(work, law, before, after): carry the memory over a corner at which the normal load, over its mean, goes
+from one value to another."""
+
+
+@inner
+def _share_at(case: Case, k: int, tau: float) -> float:
+    """The normal load over its mean, as the k-th piece of the span has it."""
+    body = case_in_piece(case, k).body
+    return load_share(body, instant_at(body, tau))
+
+
+@inner
+def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
+    """One span from the deviation (y, u) and the memory at ``work.start``, which becomes that at its end.
+
+    Where it repeats kept steps it gives up where they do not fit.
+    """
+    law, body, like = case.law, case.body, case.like
+    free = 0.0 if body.prescribed else 1.0  # the reference is the motion
+    work.start[Y] = free * y
+    work.start[IMPULSE] = 0.0 * like
+    how = Stepping(min(how.accuracy, coarsest(law, body)), how.track, how.pace, how.repeats)
+    work.creep[SLOW] = free * BELOW * how.accuracy
+    u, closest, steps = free * u, OPEN, 0
+    for k in range(pieces_of(body)):
+        here, (tau, end) = case_in_piece(case, k), piece_ends(body, k)
+        # beside scalars a state holds slip, which jumps where the belt's velocity does
+        start = anchored(law, here.body, case.belt_speed, 1.0, tau)
+        work.start[U] = held_velocity(start, instant_at(body, tau), u)
+        flow = _flow_of(here, tau, work)
+        if how.repeats:
+            closest, steps = 0.0, repeat(flow, end, steps, how, work, like)
+        else:
+            near, taken = follow(flow, end, how, work, like)
+            closest, steps = min(closest, near), steps + taken if taken >= 0 else -1
+        u = deviation_held(start, instant_at(body, end), work.start[U])
+        if steps < 0:
+            break
+        # the last piece ends where the first of the next span begins
+        last = k == pieces_of(body) - 1
+        after = _share_at(case, 0, 0.0) if last else _share_at(case, k + 1, end)
+        _over_jump(work, law, _share_at(case, k, end), after)
+    return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps, 0.0)

@@ -1,0 +1,284 @@
+"""Modes of deflections and the guards at which they change: a yield surface is met or left, slip reverses.
+
+Most laws read the modes from the state; one that remembers stick carries them on.
+
+A guard is positive as long as a mode holds; it is measured as a velocity or a deflection in the norm of energy, and
+comes with its rate, so that where it passes zero is found by Newton's method. Guards are numbered: one for each
+deflection, and last, on the line, that of the slip itself, where a law's own rate may have a corner.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
+from frictionlab.compile.stack import count_of
+from frictionlab.motion.equation import Flow, instant_near, swing_of
+from frictionlab.motion.maps.rates import (
+    FOLLOWS,
+    MEMORY,
+    SMOOTH,
+    YIELDS,
+    Work,
+    fill_rates,
+    on_circle,
+    remembers_stick,
+    rows_of,
+    slip_rate_to_yield,
+    slip_to_yield,
+)
+from frictionlab.motion.maps.step import step
+
+OPEN = 1e300
+"""The guard of what has no corner."""
+SLACK = 1e-12
+"""Of a yield surface: a smaller excess is rounding."""
+CLOSE = 1e-3
+"""Of the accuracy: how far beyond its zero a guard may be where a step ends at it."""
+
+along = by_dimension(lambda z, w: z * w, lambda z, w: z.real * w.real + z.imag * w.imag)
+"""along(z, w): the inner product."""
+
+
+class Guard(NamedTuple):
+    """A guard's number, its value and its rate."""
+
+    number: int
+    value: float
+    rate: float
+
+
+_reversal = by_dimension(
+    lambda flow, a, w: Guard(-1, flow.side * w, flow.side * a),
+    # in the plane slip turns round without coming to rest
+    lambda flow, a, w: Guard(-1, OPEN, 0.0),
+)
+
+
+@inner
+def _unloaded(k: int, a: Any, work: Work, w: Any) -> Guard:
+    """Positive until slip begins to unload what gives way, or to load what follows it."""
+    z, share = work.memory[k], work.mode[k] / work.size[k]
+    return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
+
+
+_unloaded_on_the_line = by_contact(
+    lambda work, k, a, w: Guard(k, OPEN, 0.0),
+    # a growing load may unload what yields before slip reverses
+    lambda work, k, a, w: _unloaded(k, a, work, w),
+)
+
+_unloading = by_dimension(
+    # on the line it is the slip's reversal that unloads, where the contact follows the load
+    lambda k, a, work, w: _unloaded_on_the_line(work, k, a, w),
+    lambda k, a, work, w: _unloaded(k, a, work, w),
+)
+
+
+def _no_breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    return Guard(number, OPEN, 0.0)
+
+
+def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    """Positive until a loaded deflection that sticks reaches where it begins to slip: it may depend on slip."""
+    z = work.memory[number]
+    far, loading = length(z), along(z, w)
+    if loading <= 0.0:
+        return Guard(number, OPEN, 0.0)
+    limit = flow.law.breakaway(w, number)
+    # the limit's own rate by a quotient in time, over a small part of the slip
+    ahead = 1e-6 * (length(w) + 1e-3 * swing_of(flow.body)) / (length(a) + 1e-300)
+    falls = (limit - flow.law.breakaway(w + ahead * a, number)) / ahead
+    unit = work.unit[number]
+    return Guard(number, unit * (limit * (1.0 + SLACK) - far), -unit * (loading / far + falls))
+
+
+breakaway = by_law(_no_breakaway, _no_breakaway, _breakaway, _no_breakaway)
+"""Guard of a deflection that sticks: zero where it begins to slip, open where none remembers that it sticks."""
+
+
+@inner
+def _guard_of_deflections(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    """One guard at ``work.memory``, which moves at ``work.moving``, slip w at the rate a."""
+    if number == count_of(flow.law):
+        return _reversal(flow, a, w)
+    if remembers_stick(flow.law) and work.mode[number] == FOLLOWS:
+        return breakaway(flow, number, w, a, work)
+    z, radius = work.memory[number], work.radius[number]
+    if radius > 0.0:
+        w, a = slip_to_yield(work, number, w), slip_rate_to_yield(work, number, a)
+    if work.mode[number] == YIELDS or (work.mode[number] == FOLLOWS and radius == 0.0):
+        return _unloading(number, a, work, w)
+    if work.mode[number] == FOLLOWS and radius > 0.0:
+        far = length(z)
+        outward = along(z, w) / far if far > 0.0 else length(w)
+        unit = work.unit[number]
+        return Guard(number, unit * (radius * (1.0 + SLACK) - far), -unit * outward)
+    return Guard(number, OPEN, 0.0)
+
+
+guard_of = by_scalars(
+    lambda flow, number, w, a, work: _guard_of_deflections(flow, number, w, a, work),
+    # friction by scalars is steepest where slip reverses, however far: no step should end just there
+    lambda flow, number, w, a, work: Guard(number, OPEN, 0.0),
+)
+"""guard_of(flow, number, w, a, work): one guard at ``work.memory``, which moves at ``work.moving``, slip w at a."""
+
+
+@inner
+def lowest(flow: Flow, w: Any, a: Any, work: Work) -> Guard:
+    """The lowest of all guards at ``work.memory``."""
+    found = Guard(0, OPEN, 0.0)
+    for number in range(count_of(flow.law) + 1):
+        guard = guard_of(flow, number, w, a, work)
+        if guard.value < found.value:
+            found = Guard(number, guard.value, guard.rate)
+    return found
+
+
+@inner
+def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
+    """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
+    for row in range(rows_of(flow)):
+        work.stage[row] = work.end[row]
+    return fill_rates(flow, instant_near(flow, tau), work, like)
+
+
+def _begin_smoothly(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    for k in range(count_of(flow.law)):
+        work.mode[k] = SMOOTH
+
+
+@inner
+def _begin_by_state(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    for k in range(count_of(flow.law)):
+        radius, z = work.radius[k], work.start[MEMORY + k]
+        work.mode[k] = SMOOTH
+        if radius > 0.0 or work.unloads[k] > 0.0:
+            work.memory[k] = z
+            against = slip_to_yield(work, k, w) if radius > 0.0 else w
+            loaded = along(z, against) > 0.0 or (along(z, against) == 0.0 and along(z, a) >= 0.0)
+            work.mode[k] = YIELDS if loaded and length(z) >= radius * (1.0 - 1e-13) else FOLLOWS
+
+
+@inner
+def _begin_by_memory(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    """The modes are a part of the state; but what is unloaded has stopped slipping, what is beyond reach begun."""
+    for k in range(count_of(flow.law)):
+        z = work.start[MEMORY + k]
+        work.memory[k] = z
+        # rounding of the section may leave a mode that its state has just passed
+        if work.mode[k] == YIELDS and along(z, w) < 0.0:
+            work.mode[k] = FOLLOWS
+        if work.mode[k] == FOLLOWS and breakaway(flow, k, w, a, work).value <= 0.0:
+            work.mode[k] = YIELDS
+
+
+def _begin_deflections(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    if remembers_stick(flow.law):
+        _begin_by_memory(flow, a, w, work)
+    else:
+        _begin_by_state(flow, a, w, work)
+
+
+begin = by_scalars(_begin_deflections, _begin_smoothly)
+"""begin(flow, a, w, work): set the modes at ``work.start``; slip w moves at the rate a."""
+
+
+@inner
+def restore(flow: Flow, work: Work) -> None:
+    """Put the yielding deflections of ``work.start`` back on their surfaces, which errors of a step lead off."""
+    for k in range(count_of(flow.law)):
+        if work.mode[k] == YIELDS and work.radius[k] > 0.0:
+            work.start[MEMORY + k] = on_circle(work.radius[k], work.start[MEMORY + k])
+
+
+@inner
+def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, like: Any) -> float:
+    """The step to the first guard that passes zero within a step of ``high``, just beyond it; left in ``work.end``.
+
+    Newton's method on the lowest guard, kept between a step that no guard ends and one that a guard does.
+    """
+    low, h, within = 0.0, high, CLOSE * accuracy
+    for turn in range(60):
+        # a step was taken to h: on which side of the event does it end?
+        w, a = rates_at_end(flow, tau + h, work, like)
+        guard = lowest(flow, w, a, work)
+        if guard.value <= 0.0:
+            high = h
+        else:
+            low = h
+        # just beyond the event, never before it: the next step starts in the new mode
+        if -within <= guard.value <= 0.0 or high - low <= 4e-16 * (tau + high):
+            break
+        # half of what may remain beyond: an approach from the near side does not end there
+        trial = h - (guard.value + 0.5 * within) / guard.rate if guard.rate < 0.0 else low
+        # on a bend Newton's steps may creep towards one end: halve now and then
+        h = trial if low < trial < high and turn % 4 < 3 else 0.5 * (low + high)
+        step(flow, tau, h, work, like)
+    # the last step tried need not be the one that ends just beyond
+    if h != high:
+        step(flow, tau, high, work, like)
+    return high
+
+
+_unloads_by_reversal = by_contact(
+    lambda work: True,
+    # a falling load may drag on what yields although slip reverses
+    lambda work: False,
+)
+
+
+@inner
+def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
+    """Change every mode whose guard has been passed at ``work.memory``; returns the side of slip."""
+    n = count_of(flow.law)
+    reverses = guard_of(flow, n, w, a, work).value <= 0.0
+    for k in range(n):
+        # slip that reverses on the line unloads every deflection that yields at once
+        passed = guard_of(flow, k, w, a, work).value <= 0.0
+        if work.mode[k] == YIELDS and (passed or (reverses and _unloads_by_reversal(work))):
+            work.mode[k] = FOLLOWS
+        elif work.mode[k] == FOLLOWS and passed:
+            work.mode[k] = YIELDS
+    return -flow.side if reverses else flow.side
+
+
+@inner
+def note_guards(flow: Flow, w: Any, a: Any, work: Work) -> None:
+    """Keep every guard at ``work.memory`` and its rate, to be compared with those at the end of a step."""
+    n = count_of(flow.law)
+    for number in range(n + 1):
+        guard = guard_of(flow, number, w, a, work)
+        work.guards[2 * number], work.guards[2 * number + 1] = guard.value, guard.rate
+
+
+@fast
+def _lowest_between(h: float, value0: float, rate0: float, value1: float, rate1: float) -> Any:
+    """Where the cubic through two values and rates is lowest between them, and how low."""
+    # its derivative is rate0 + 2 b s + 3 c s^2 with s from 0 to 1, negative at 0 and positive at 1
+    c = h * (rate0 + rate1) - 2.0 * (value1 - value0)
+    b = 3.0 * (value1 - value0) - h * (2.0 * rate0 + rate1)
+    root = math.sqrt(max(b * b - 3.0 * c * h * rate0, 0.0))
+    s = -h * rate0 / (b + root) if b + root > 0.0 else 0.5
+    s = min(max(s, 0.0), 1.0)
+    return s, value0 + s * (h * rate0 + s * (b + s * c))
+
+
+@inner
+def hidden(flow: Flow, h: float, w: Any, a: Any, work: Work) -> float:
+    """A shorter step where a guard may come close to zero within one that none ends, or pass it twice; else h.
+
+    The guards at the start are those noted, at the end those of ``work.memory``.
+    """
+    for number in range(count_of(flow.law) + 1):
+        value0, rate0 = work.guards[2 * number], work.guards[2 * number + 1]
+        guard = guard_of(flow, number, w, a, work)
+        # a guard that falls first and rises last may have been zero in between
+        if rate0 < 0.0 < guard.rate:
+            share, least = _lowest_between(h, value0, rate0, guard.value, guard.rate)
+            if least < 0.0625 * min(value0, guard.value) and 0.01 < share < 0.99:
+                return share * h
+    return h

@@ -1,0 +1,373 @@
+"""The period map of a bristle law whose deflection is known along a straight slip path, in one direction.
+
+Between two reversals of slip the deflection is a function of the way slid since the last one: it is put in where
+friction is evaluated, and what is left to integrate is the mass, by DOP853, without the stiffness of the bristles.
+A leg ends where slip does, or where friction saturates for good. The layer after a reversal is stepped through by
+doubling the way, so that no tolerance can jump over it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import fast, fast_embedded, inner
+from frictionlab.motion.equation import (
+    Instant,
+    belt_path,
+    deviation_acceleration,
+    deviation_slip,
+    instant_near,
+    load_share,
+    piece_ends,
+    pieces_of,
+    reference_position,
+    reference_velocity,
+    runs_away,
+    slip_at,
+    slip_rate,
+)
+from frictionlab.motion.events import slip_events
+from frictionlab.motion.maps.case import Case, Pace, Stepping, case_in_piece, keep_step
+from frictionlab.motion.maps.sliding import MOST_STEPS
+from frictionlab.motion.orbit.recorder import panel_writer
+from frictionlab.motion.steppers.dop853 import (
+    Dense,
+    State,
+    carrying_nothing,
+    interpolant,
+    motion_within,
+    stepper,
+)
+from frictionlab.motion.steppers.step import growth_of, longest_step, wary_growth_of
+from frictionlab.scene.body import BodyNumbers
+
+
+class LegStart(NamedTuple):
+    """What a leg began with: deflection, position of the deviation and of the reference, and time."""
+
+    z: float
+    y: float
+    tau: float
+    reference: float
+
+
+class Leg(NamedTuple):
+    """Slip in one direction: what it began with, and sine and cosine at the anchor time."""
+
+    law: Any
+    body: BodyNumbers
+    belt_speed: float
+    side: float
+    anchor: float
+    sine: float
+    cosine: float
+    start: LegStart
+
+
+class Carried(NamedTuple):
+    """A state with its deflection after the span of the body, and what was met on the way."""
+
+    y: Any
+    u: Any
+    z: Any
+    friction_impulse: Any  # integral of friction, in shares of the mean normal load
+    closest: float  # smallest slip speed at a node
+    steps: int  # -1: gave up
+
+
+@inner
+def _anchored(leg: Leg, tau: float) -> Leg:
+    angle = leg.body.frequency * tau
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return Leg(leg.law, leg.body, leg.belt_speed, leg.side, tau, sine, cosine, leg.start)
+
+
+@inner
+def _leg(case: Case, side: float, tau: float, y: float, z: float) -> Leg:
+    start, angle = LegStart(z, y, tau, reference_position(case.body, tau)), case.body.frequency * tau
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return Leg(case.law, case.body, case.belt_speed, side, tau, sine, cosine, start)
+
+
+@fast
+def _way(leg: Leg, now: Instant, y: float) -> float:
+    """How far the leg has slid, in its direction."""
+    body = leg.body
+    swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.start.reference
+    carried = belt_path(body, leg.belt_speed, leg.start.tau, now.tau)
+    return max(leg.side * ((y - leg.start.y) + swung - carried), 0.0)
+
+
+@fast_embedded
+def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
+    """Acceleration of the deviation, and friction in shares of the mean normal load."""
+    side, law, now = leg.side, leg.law, instant_near(leg, tau)
+    # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
+    w = side * max(side * deviation_slip(leg, now, u), 0.0)
+    z = law.deflected(leg.start.z, side * _way(leg, now, y))
+    rub = law.friction(w, z, law.rate(w, z))
+    return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
+
+
+_rates = carrying_nothing(path_rates)
+step, dense = stepper(_rates), interpolant(_rates)
+
+
+@fast
+def _acceleration_after(leg: Leg, tau: float, end: Any) -> float:
+    a, _rub = path_rates(leg, tau, end.x, end.v)
+    return a
+
+
+stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
+
+
+@inner
+def _slid(leg: Leg, tau: float, y: float) -> float:
+    return _way(leg, instant_near(leg, tau), y)
+
+
+@inner
+def share_of_the_way(law: Any, body: BodyNumbers, accuracy: float) -> float:
+    """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
+    impulse = body.normal_load * law.sliding_friction(0.0)
+    return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)
+
+
+@inner
+def _longest(leg: Leg, way: float, share: float, w: float, rate: float) -> float:
+    """The longest step that adds no more than this share of the way, or of the bristle's own length."""
+    law = leg.law
+    length = law.largest_deflection()
+    here, next_ = (
+        law.deflected(leg.start.z, leg.side * way),
+        law.deflected(leg.start.z, leg.side * (way + length)),
+    )
+    if abs(next_ - here) <= 1e-13 * length:
+        return 1e300
+    ahead = share * max(length, way)
+    return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(rate) * ahead) + 1e-300)
+
+
+@inner
+def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> Any:
+    """The step at whose end the leg has slid this way (safeguarded Newton)."""
+    low, h = 0.0, high
+    taken = step(leg, tau, state, h)
+    for _ in range(60):
+        beyond = _slid(leg, tau + h, taken.x) - way
+        low, high = (low, h) if beyond > 0.0 else (h, high)
+        speed = leg.side * slip_at(leg, tau + h, taken.v)
+        trial = h - beyond / speed if speed > 0.0 else low
+        if not low < trial < high:
+            trial = 0.5 * (low + high)
+        done = abs(trial - h) <= 4e-16 * (tau + h)
+        h = trial
+        taken = step(leg, tau, state, h)
+        if done or high - low <= 4e-16 * (tau + h):
+            break
+    return h, taken
+
+
+@inner
+def _slipping(part: float, leg: Leg, tau: float, taken: Dense) -> Any:
+    """A while into a step."""
+    body, (y, u), now = leg.body, motion_within(taken, part), instant_near(leg, tau + part)
+    _a, rub = path_rates(leg, tau + part, y, u)
+    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, u + reference_velocity(body, now.sine, now.cosine), rub
+
+
+_note_slip = panel_writer(_slipping)
+
+
+@inner
+def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
+    """The direction in which slip goes on from here."""
+    leg = _leg(case, 1.0, tau, y, z)
+    w = slip_at(leg, tau, u)
+    if w == 0.0:
+        a, _rub = path_rates(leg, tau, y, u)
+        w = slip_rate(leg, tau, a)
+    return 1.0 if w >= 0.0 else -1.0
+
+
+REPEAT, ACCEPT, TURN, SATURATE = 0, 1, 2, 3
+
+
+class PathStep(NamedTuple):
+    """Whether a step is repeated with h or accepted, ends where slip turns round or where friction saturates."""
+
+    verdict: int
+    h: float
+    taken: Any
+
+
+class PathNode(NamedTuple):
+    """Where a step starts: its leg, anchored there, the way slid on it and the way after which friction saturates.
+
+    leaving: whether slip has just turned round.
+    """
+
+    leg: Leg
+    tau: float
+    state: State
+    way: float
+    corner: float
+    leaving: bool
+
+
+@inner
+def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
+    """The start of a leg."""
+    a, rub = path_rates(leg, tau, y, u)
+    return PathNode(
+        leg, tau, State(y, u, a, rub, 0.0, 0.0), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True
+    )
+
+
+@inner
+def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
+    """What becomes of an accurate step of h: whether slip turned round in it, between its ends included."""
+    leg, tau, state = node.leg, node.tau, node.state
+    after, limit = leg.side * slip_at(leg, tau + h, taken.v), h
+    if after <= 0.0 and node.leaving:
+        # just behind a reversal slip is zero to rounding: a step must first get away from it, or slip never does
+        if h * leg.body.frequency > 1e-12:
+            return PathStep(REPEAT, 0.25 * h, taken)
+        return PathStep(TURN, h, taken)
+    a, _rub = path_rates(leg, tau + h, taken.x, taken.v)
+    falls, rises = leg.side * slip_rate(leg, tau, state.a), leg.side * slip_rate(leg, tau + h, a)
+    # slip that falls first and rises last may have passed zero twice between the ends
+    if after > 0.0 and not node.leaving and falls < 0.0 < rises:
+        limit = lowest(leg, tau, state, falls, h)
+        after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
+    if after > 0.0:
+        return PathStep(ACCEPT, h, taken)
+    h, taken = stop(leg, tau, state, 0.0, limit)
+    return PathStep(TURN, h, taken)
+
+
+@inner
+def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
+    """What becomes of an accurate step of h: whether it ends before that, where slip turns or friction saturates."""
+    leg, tau, corner = node.leg, node.tau, node.corner
+    ending = _until_turn(node, taken, h)
+    if ending.verdict == REPEAT:
+        return ending
+    # where friction saturates for good it has a corner
+    beyond = _slid(leg, tau + ending.h, ending.taken.x) > corner * (1.0 + 1e-14)
+    if node.way < corner < math.inf and beyond:
+        h, taken = _until_way(leg, tau, node.state, ending.h, corner)
+        return PathStep(SATURATE, h, taken)
+    return ending
+
+
+@inner
+def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any:
+    """One step of h from a node: what becomes of it, and how much longer the next one may be."""
+    leg = node.leg
+    taken = step(leg, node.tau, node.state, h)
+    growth = wary_growth_of(leg.body, taken, accuracy) if in_a_layer else growth_of(leg.body, taken, accuracy)
+    if growth < 1.0:
+        return PathStep(REPEAT, h * growth, taken), growth
+    return _until_event(node, taken, h), growth
+
+
+@inner
+def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> PathNode:
+    """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one ends."""
+    leg, taken = node.leg, ending.taken
+    # A way of rounding size may shrink: the corner at its end, once passed, would be met again for ever.
+    way = max(node.way, _slid(leg, node.tau + ending.h, taken.x))
+    way = node.corner if ending.verdict == SATURATE else way
+    if ending.verdict == TURN:
+        z = leg.law.deflected(leg.start.z, leg.side * way)
+        return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)
+    leg = _anchored(leg, tau)
+    a, rub = path_rates(leg, tau, taken.x, taken.v)
+    return PathNode(leg, tau, State(taken.x, taken.v, a, rub, 0.0, 0.0), way, node.corner, False)
+
+
+@inner
+def _first_node(case: Case, tau: float, y: float, u: float, z: float) -> PathNode:
+    return _node_of(_leg(case, _side(case, tau, y, u, z), tau, y, z), tau, y, u)
+
+
+@inner
+def _deflection_at(node: PathNode) -> float:
+    leg = node.leg
+    return leg.law.deflected(leg.start.z, leg.side * _slid(leg, node.tau, node.state.x))
+
+
+@inner
+def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pace) -> Carried:
+    """Between two corners of what changes in time; image: the state at the first, and the steps so far."""
+    y, u, z, friction_impulse, last = image.y, image.u, image.z, image.friction_impulse, pace.taken[0] - 1
+    node = _first_node(case, tau, y, u, z)
+    for k in range(image.steps, last + 1):
+        # where events come earlier or later, the last step makes up for it
+        left = end - node.tau
+        h = left if k == last else min(pace.lengths[k], left)
+        ending = _until_event(node, step(node.leg, node.tau, node.state, h), h)
+        if ending.verdict != pace.endings[k]:
+            return Carried(y, u, z, friction_impulse, 0.0, -1)
+        friction_impulse = friction_impulse + ending.taken.friction_impulse
+        node = _next_node(case, node, ending, node.tau + ending.h if left > ending.h else end)
+        if end - node.tau <= 4e-15 * end:
+            return Carried(node.state.x, node.state.v, _deflection_at(node), friction_impulse, 0.0, k + 1)
+    return Carried(y, u, z, friction_impulse, 0.0, -1)
+
+
+@inner
+def path_map(case: Case, y: float, u: float, z: float, how: Stepping) -> Carried:
+    """One span from the deviation (y, u) and deflection z at tau = 0.
+
+    By the steps of another motion close by it gives up where the events are not those of that one. Steps end at the
+    events of their own motion: the end is then a smooth function of the start.
+    """
+    image = Carried(y, u, z, 0.0, 1e300, 0)
+    for k in range(pieces_of(case.body)):
+        here, (tau, end) = case_in_piece(case, k), piece_ends(case.body, k)
+        if how.repeats:
+            image = _repeated_piece(here, tau, end, image, how.pace)
+        else:
+            image = _path_piece(here, tau, end, image, how)
+        if image.steps < 0:
+            break
+    return image
+
+
+@inner
+def _path_piece(case: Case, tau: float, end: float, image: Carried, how: Stepping) -> Carried:
+    """Between two corners of what changes in time; image: the state at the first, and what was met so far."""
+    law, body, accuracy = case.law, case.body, how.accuracy
+    longest = longest_step(body, law.sliding_friction(0.0), accuracy)
+    share = share_of_the_way(law, body, accuracy)
+    y, u, z, friction_impulse, closest, steps = image
+    node = _first_node(case, tau, y, u, z)
+    h = 0.1 * longest
+    while end - node.tau > 4e-15 * end:
+        leg, tau, state = node.leg, node.tau, node.state
+        w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
+        closest = min(closest, abs(w))
+        # in the layer behind a reversal steps grow with the way, lest a tolerance jumps over it
+        layered = node.corner > node.way or node.corner == math.inf
+        ahead = _longest(leg, node.way, share, w, rate) if layered else 1e300
+        h = min(h, ahead, longest, end - tau)
+        ending, growth = _attempt(node, h, ahead < 1e300, accuracy)
+        tried, h, steps = h, ending.h, steps + 1
+        if steps > MOST_STEPS or runs_away(body, state.x):
+            return Carried(state.x, state.v, z, friction_impulse, closest, -1)
+        if ending.verdict == REPEAT:
+            continue
+        # a step to the end goes there whenever it is repeated
+        last = ending.verdict == ACCEPT and end - tau <= h
+        keep_step(how.pace, 1e300 if last else tried, ending.verdict)
+        if how.track.stick.size > 0:
+            _note_slip(how.track, tau, h, False, leg, tau, dense(leg, tau, state, h))
+        friction_impulse = friction_impulse + ending.taken.friction_impulse
+        node = _next_node(case, node, ending, tau + h if end - tau > h else end)
+        h = h * growth if ending.verdict != TURN else longest
+    return Carried(node.state.x, node.state.v, _deflection_at(node), friction_impulse, closest, steps)

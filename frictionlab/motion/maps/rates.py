@@ -1,0 +1,275 @@
+"""The equation of motion of a mass and of what its friction remembers: deflections or scalars, one or several.
+
+On the line every quantity is a float, in the plane a complex number; a scalar is real in both. The mass moves by its
+deviation y from the harmonic reference and by u = y'; friction's impulse is integrated along. Beside scalars the slip
+w itself takes the place of u: such a contact may creep at 1e-26 of the belt speed where others stick, and as a
+difference of two velocities that would be lost. A deflection goes by its law's own rate, but for two kinds that have
+corners: one that follows the slip and one that yields are held so to the end of a step.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import fast, inlined
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars
+from frictionlab.compile.stack import count_of, room
+from frictionlab.motion.contact import friction_of, rate_of
+from frictionlab.motion.equation import (
+    Flow,
+    Instant,
+    acceleration_under,
+    belt_velocity,
+    deviation_slip,
+    deviation_slip_rate,
+    instant_near,
+    load_share,
+    normal_load,
+    normal_load_bend,
+    normal_load_rate,
+    reference_velocity,
+    slopes_at,
+    unbalanced_load,
+)
+from frictionlab.motion.relaxing import along_x1, elements_of, relaxing_force, relaxing_rate
+from frictionlab.scene.body import BodyNumbers
+
+Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
+"""Places of the mass: its deviation, the velocity of that (beside scalars: slip), the integral of friction in shares
+of the mean normal load; then memory."""
+
+FOLLOWS, SMOOTH, YIELDS = -1.0, 0.0, 1.0
+"""Modes of a deflection: it moves with the slip; by its law's rate; on its yield surface, or gives way before it."""
+
+
+class Work(NamedTuple):
+    """Room for one step; a state is the mass (Y, U, IMPULSE) and, from MEMORY on, n numbers remembered, and last the
+    forces of what of the body relaxes."""
+
+    start: Any  # where the step starts
+    end: Any  # where it ends
+    stage: Any  # at which rates are asked for
+    rates: Any
+    slope: Any  # derivative of the rates by time
+    increments: Any  # of every stage
+    bends: Any  # of the step between its ends
+    memory: Any  # [n] as the law sees it
+    moving: Any  # [n] its rates
+    jacobian: (
+        Any  # blocks, of each number: its rate by slip, by itself, friction by it; last friction by slip
+    )
+    factors: Any  # blocks, of each: E, C of the elimination; last the inverse for the mass, friction by slip in all
+    columns: Any  # [3 n + 2] of difference quotients
+    guards: Any  # [2 (n + 1)] of the modes at the start, each with its rate
+    unit: Any  # [n] what a number is multiplied by in the norm of energy
+    size: Any  # [n] of a number in steady sliding
+    positive: Any  # [n] 1 for a scalar that is never negative, else 0
+    radius: Any  # [n] of its yield surface, 0 for none
+    unloads: Any  # [n] 1 for a deflection without one that follows the slip wherever that makes it smaller
+    mode: Any  # [n] FOLLOWS, SMOOTH or YIELDS
+    creep: Any  # [2] the scale of the slip that creeps, where a step takes its logarithm, and how slow a slip does
+    keeps_stiffness: Any  # filled where the contact keeps its stiffness while the normal load changes
+    share: Any  # [3] there: the normal load over its mean, and its first and second derivative
+
+
+kind_of_memory = by_scalars(lambda law, like: like, lambda law, like: 0.0)
+"""kind_of_memory(law, like): a number of the kind that the law remembers; like: of the kind of a slip."""
+
+as_memory = by_scalars(lambda law, value: value, lambda law, value: value.real)
+"""as_memory(law, value): a number of a state as the law sees it."""
+
+contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
+"""contact_kind(body): what ``workspace`` is told of the contact."""
+
+
+@inlined
+def workspace(law: Any, like: Any, contact: Any) -> Work:
+    """Room on the caller's stack, at zero: it lives as long as the caller; contact: that of the body.
+
+    There is room for eight springs that relax.
+    """
+    return Work(
+        start=room(law, 1, 11, like),
+        end=room(law, 1, 11, like),
+        stage=room(law, 1, 11, like),
+        rates=room(law, 1, 11, like),
+        slope=room(law, 1, 11, like),
+        increments=room(law, 8, 88, like),
+        bends=room(law, 3, 33, like),
+        memory=room(law, 1, 0, kind_of_memory(law, like)),
+        moving=room(law, 1, 0, kind_of_memory(law, like)),
+        jacobian=room(law, 6, 2, like),
+        factors=room(law, 4, 4, like),
+        columns=room(law, 3, 5, like),
+        guards=room(law, 2, 2, 0.0),
+        unit=room(law, 1, 0, 0.0),
+        size=room(law, 1, 0, 0.0),
+        positive=room(law, 1, 0, 0.0),
+        radius=room(law, 1, 0, 0.0),
+        unloads=room(law, 1, 0, 0.0),
+        mode=room(law, 1, 0, 0.0),
+        creep=room(law, 0, 2, 0.0),
+        keeps_stiffness=contact,
+        share=room(law, 0, 3, 0.0),
+    )
+
+
+# --- the velocity that a state holds --------------------------------------------------------------------------------
+
+slip_held = by_scalars(lambda flow, now, u: deviation_slip(flow, now, u), lambda flow, now, w: w)
+"""slip_held(flow, now, u): slip, from the velocity that a state holds."""
+
+
+def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
+    v = w + belt_velocity(flow.body, flow.belt_speed, now)
+    return v - reference_velocity(flow.body, now.sine, now.cosine)
+
+
+deviation_held = by_scalars(lambda flow, now, u: u, _deviation_of_slip)
+"""deviation_held(flow, now, u): the velocity of the deviation, from the one that a state holds."""
+
+held_velocity = by_scalars(lambda flow, now, u: u, lambda flow, now, u: deviation_slip(flow, now, u))
+"""held_velocity(flow, now, u): the velocity that a state holds, from that of the deviation."""
+
+velocity_held = by_scalars(
+    lambda flow, now, u: u + reference_velocity(flow.body, now.sine, now.cosine),
+    lambda flow, now, w: w + belt_velocity(flow.body, flow.belt_speed, now),
+)
+"""velocity_held(flow, now, u): the velocity of the mass, from the one that a state holds."""
+
+rate_held = by_scalars(lambda flow, now, a: a, lambda flow, now, a: deviation_slip_rate(flow, now, a))
+"""rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
+
+
+@fast
+def rows_of(flow: Flow) -> int:
+    """How many numbers a state is."""
+    return MEMORY + count_of(flow.law) + elements_of(flow.body)
+
+
+@fast
+def springs_at(flow: Flow, work: Work) -> Any:
+    """The linear springs and dashpots that the body has beside ``work.start``."""
+    now = instant_near(flow, flow.anchor)
+    return slopes_at(flow.body, work.start[Y], deviation_held(flow, now, work.start[U]))
+
+
+# --- stick, modes and yield -----------------------------------------------------------------------------------------
+
+
+def _never(law: Any) -> bool:
+    return False
+
+
+remembers_stick = by_law(_never, _never, lambda law: law.remembers_stick(), _never)
+"""remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a memory."""
+
+
+# --- a contact that keeps its stiffness ---------------------------------------------------------------------------
+#
+# Under n times the mean normal load a bristle of that stiffness is to its law one deflected by z/n: this is what a
+# state remembers, and what moves at z'/n - (n'/n) (z/n). The law is asked for z' and gives it n times too large.
+
+
+def _share_at(work: Work, body: BodyNumbers, now: Instant) -> None:
+    mean = body.normal_load
+    work.share[0] = load_share(body, now)
+    work.share[1], work.share[2] = normal_load_rate(body, now) / mean, normal_load_bend(body, now) / mean
+
+
+note_share = by_contact(
+    # the contact follows the load
+    lambda work, body, now: None,
+    _share_at,
+)
+"""note_share(work, body, now): keep the normal load of this instant where the contact hangs on it."""
+
+_of_contact = by_contact(lambda work, rate: rate, lambda work, rate: rate / work.share[0])
+"""_of_contact(work, rate): z'/n from the rate that a law tells."""
+
+stretching = by_contact(lambda work, z: 0.0 * z, lambda work, z: (work.share[1] / work.share[0]) * z)
+"""stretching(work, z): by how much z'/n of a deflection that stays at z/n exceeds zero."""
+
+slip_to_yield = by_contact(lambda work, k, w: w, lambda work, k, w: w - work.share[1] * work.memory[k])
+"""slip_to_yield(work, k, w): the slip against the yield surface of a deflection, which a growing load takes away."""
+
+
+def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
+    moves = work.moving[k] - stretching(work, work.memory[k])
+    return a - work.share[1] * moves - work.share[2] * work.memory[k]
+
+
+slip_rate_to_yield = by_contact(lambda work, k, a: a, _slip_rate_of_yield)
+"""slip_rate_to_yield(work, k, a): its rate."""
+
+
+# --- rates --------------------------------------------------------------------------------------------------------
+
+on_circle = by_dimension(
+    lambda radius, z: math.copysign(radius, z),
+    # not a rounding error inside it, where the law would let it follow the slip
+    lambda radius, z: (radius * (1.0 + 1e-15) / math.sqrt(z.real * z.real + z.imag * z.imag)) * z,
+)
+"""on_circle(radius, z): a deflection put on its yield surface."""
+
+_yielding = by_dimension(
+    # what yields on a line stays where it is: no rounding of the law's own rate
+    lambda law, memory, k, w: 0.0,
+    # it turns on its circle, as the law says
+    lambda law, memory, k, w: rate_of(law, memory, k, w),
+)
+
+
+@fast
+def _deflection_rate(law: Any, work: Work, k: int, w: Any) -> Any:
+    if work.mode[k] < 0.0:  # difference quotients at a corner must not see what comes after
+        return _of_contact(work, w)
+    if work.radius[k] > 0.0 and work.mode[k] > 0.0:
+        work.memory[k] = on_circle(work.radius[k], work.memory[k])
+        turns = _of_contact(work, _yielding(law, work.memory, k, w))
+        return turns + stretching(work, work.memory[k])
+    return _of_contact(work, rate_of(law, work.memory, k, w))
+
+
+rate_in_mode = by_scalars(
+    lambda law, work, k, w: _deflection_rate(law, work, k, w),
+    lambda law, work, k, w: law.rate(w, work.memory, k),
+)
+"""rate_in_mode(law, work, k, w): of one of ``work.memory``; what yields is put on its yield surface first."""
+
+
+@fast
+def friction_in_mode(law: Any, work: Work, w: Any) -> Any:
+    """The friction coefficient of ``work.memory``; leaves the rates of that in ``work.moving``."""
+    for k in range(count_of(law)):
+        work.moving[k] = rate_in_mode(law, work, k, w)
+    return friction_of(law, work.memory, work.moving, w)
+
+
+@fast
+def load_on(body: BodyNumbers, now: Instant) -> float:
+    """The normal load by which friction moves the mass: none where its motion is prescribed."""
+    return 0.0 if body.prescribed else normal_load(body, now)
+
+
+@fast
+def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
+    """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
+    body, n = flow.body, count_of(flow.law)
+    note_share(work, body, now)
+    for k in range(n):
+        work.memory[k] = as_memory(flow.law, work.stage[MEMORY + k])
+    y, held = work.stage[Y], work.stage[U]
+    w, u = slip_held(flow, now, held), deviation_held(flow, now, held)
+    # friction first: it may depend on the rates of what is remembered
+    friction = friction_in_mode(flow.law, work, w)
+    a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
+    a = a - along_x1(relaxing_force(body, work.stage, MEMORY + n), like)
+    for k in range(elements_of(body)):
+        work.rates[MEMORY + n + k] = relaxing_rate(body, k, work.stage[MEMORY + n + k], u) + 0.0 * like
+    work.rates[Y], work.rates[U] = u, rate_held(flow, now, a)
+    work.rates[IMPULSE] = load_share(body, now) * friction
+    for k in range(n):
+        work.rates[MEMORY + k] = work.moving[k] - stretching(work, work.memory[k]) + 0.0 * like
+    return w, deviation_slip_rate(flow, now, a)

@@ -1,0 +1,294 @@
+"""One step of a mass and what its friction remembers: Rodas5P, by elimination along an arrow.
+
+The rate of a number z_k that a law remembers depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k,
+B_k = dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a stage
+
+    (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
+
+are solved number by number: E_k = (1/(gamma h) - A_k)^-1 and C_k = E_k B_k give k_zk = E_k r_zk + C_k k_u,
+and what is left is one block for k_u. The cost grows with their count, not with its cube.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.dispatch import by_dimension, by_relaxing, by_scalars, length
+from frictionlab.compile.stack import count_of
+from frictionlab.motion.equation import Flow, instant_near, load_share, restoring_force
+from frictionlab.motion.linalg import add, apply, block, diagonal, inverse, keep, product, scale
+from frictionlab.motion.maps.creep import creeps, error_told, rate_taken, velocity_taken, velocity_told
+from frictionlab.motion.maps.rates import (
+    IMPULSE,
+    MEMORY,
+    U,
+    Work,
+    Y,
+    as_memory,
+    fill_rates,
+    load_on,
+    rows_of,
+    springs_at,
+)
+from frictionlab.motion.relaxing import along_x1, elements_of, energy_unit, relaxing_force
+from frictionlab.motion.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
+from frictionlab.scene.body import BodyNumbers
+
+LITTLE = 1e-2
+"""Of the unit of a scalar: so much of its error counts where friction does not feel it."""
+SIMULTANEOUS = 6
+"""From the stage before this one on, all are at the end of the step: its sine and cosine serve them all."""
+
+
+@fast
+def _alone(body: BodyNumbers, k: int, h: float) -> float:
+    """What the solve of a stage makes of one relaxing force by itself."""
+    return 1.0 / (1.0 / (GAMMA * h) + body.relaxing.rate[k])
+
+
+def _yielded_by_springs(body: BodyNumbers, h: float) -> float:
+    total = 0.0
+    for k in range(elements_of(body)):
+        total += _alone(body, k, h) * body.relaxing.stiffness[k]
+    return total
+
+
+_yielded = by_relaxing(lambda body, h: 0.0, _yielded_by_springs)
+"""_yielded(body, h): by how much relaxing forces grow with the velocity along x1, within a stage."""
+
+
+@fast
+def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
+    """Fill ``work.factors`` for a step of h from ``work.jacobian``.
+
+    No pivots: a block that is singular to rounding makes an error that is not finite, and the step is repeated.
+    """
+    body, n, diagonally, beside = flow.body, count_of(flow.law), 1.0 / (GAMMA * h), springs_at(flow, work)
+    # friction by slip: at once, and through every deflection that slip moves within the step
+    by_slip = block(work.jacobian, 3 * n, like)
+    for k in range(n):
+        own = scale(-1.0, block(work.jacobian, 3 * k + 1, like), like)
+        alone = inverse(add(diagonal(diagonally, 0.0, like), own, like), like)
+        moved = product(alone, block(work.jacobian, 3 * k, like), like)
+        by_slip = add(by_slip, product(block(work.jacobian, 3 * k + 2, like), moved, like), like)
+        keep(work.factors, 2 * k, alone, like)
+        keep(work.factors, 2 * k + 1, moved, like)
+    # the mass, with its springs at the end of the step: y' = u makes them gamma h K in the block of u
+    half = 0.5 * _yielded(body, h)
+    mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean + half
+    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split + half, like)
+    keep(
+        work.factors,
+        2 * n,
+        inverse(add(mass, scale(load_on(body, instant_near(flow, flow.anchor)), by_slip, like), like), like),
+        like,
+    )
+    keep(work.factors, 2 * n + 1, by_slip, like)
+
+
+_stretched = by_dimension(
+    lambda body, x: (body.stiffness_mean + body.stiffness_split) * x,
+    lambda body, x: body.stiffness_mean * x + body.stiffness_split * x.conjugate(),
+)
+"""The force of the springs."""
+
+
+@fast
+def _argument(i: int, flow: Flow, work: Work) -> None:
+    """Where stage i asks for rates: the start and what the stages before it add."""
+    size = rows_of(flow)
+    for row in range(size):
+        work.stage[row] = work.start[row]
+    for j in range(i):
+        share = INCREMENTS[i, j]
+        for row in range(size):
+            work.stage[row] = work.stage[row] + share * work.increments[size * j + row]
+
+
+@fast
+def _right_side(i: int, flow: Flow, h: float, work: Work) -> None:
+    """Add to the rates what the stages before i and the slope in time bring to the right-hand sides."""
+    size, late, per = rows_of(flow), h * SLOPES[i], 1.0 / h
+    for row in range(size):
+        work.rates[row] = work.rates[row] + late * work.slope[row]
+    if creeps(flow.law, work):
+        work.rates[IMPULSE] = work.rates[IMPULSE] + (late / flow.body.normal_load) * work.slope[U]
+    for j in range(i):
+        share = COUPLINGS[i, j] * per
+        for row in range(size):
+            work.rates[row] = work.rates[row] + share * work.increments[size * j + row]
+
+
+def _relaxed_springs(flow: Flow, i: int, h: float, work: Work) -> float:
+    first, total = rows_of(flow) * (i + 1) - elements_of(flow.body), 0.0
+    for k in range(elements_of(flow.body)):
+        alone = _alone(flow.body, k, h) * work.rates[rows_of(flow) - elements_of(flow.body) + k]
+        work.increments[first + k] = alone
+        total += alone.real
+    return total
+
+
+_relaxed = by_relaxing(lambda flow, i, h, work: 0.0, _relaxed_springs)
+"""_relaxed(flow, i, h, work): relaxing forces at the velocity kept, their sum; left in the increments of stage i."""
+
+
+def _stretched_springs(flow: Flow, i: int, h: float, u: Any, work: Work) -> None:
+    first = rows_of(flow) * (i + 1) - elements_of(flow.body)
+    for k in range(elements_of(flow.body)):
+        stretched = _alone(flow.body, k, h) * flow.body.relaxing.stiffness[k] * u.real
+        work.increments[first + k] = work.increments[first + k] + stretched
+
+
+_stretch = by_relaxing(lambda flow, i, h, u, work: None, _stretched_springs)
+"""_stretch(flow, i, h, u, work): add what the change u of velocity makes of them."""
+
+
+@fast
+def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
+    """The increments of stage i from its right-hand sides in ``work.rates``."""
+    n, body = count_of(flow.law), flow.body
+    first = rows_of(flow) * i
+    # each number with the velocity kept, then the mass, then what its change of velocity adds to each number
+    alone = 0.0 * like  # friction of what the deflections would do if the mass kept its velocity
+    for k in range(n):
+        moved = apply(block(work.factors, 2 * k, like), work.rates[MEMORY + k])
+        work.increments[first + MEMORY + k] = moved
+        alone = alone + apply(block(work.jacobian, 3 * k + 2, like), moved)
+    right = (
+        work.rates[U]
+        - along_x1(_relaxed(flow, i, h, work), like)
+        - GAMMA * h * _stretched(springs_at(flow, work), work.rates[Y])
+        - load_on(body, instant_near(flow, flow.anchor)) * alone
+    )
+    u = apply(block(work.factors, 2 * n, like), right)
+    work.increments[first + Y] = GAMMA * h * (work.rates[Y] + u)
+    work.increments[first + U] = u
+    for k in range(n):
+        moved = apply(block(work.factors, 2 * k + 1, like), u)
+        work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
+    _stretch(flow, i, h, u, work)
+    if creeps(flow.law, work):
+        held = restoring_force(springs_at(flow, work), work.increments[first + Y], u)
+        held = held + along_x1(relaxing_force(body, work.increments, first + MEMORY + n), like)
+        rubs = -held / body.normal_load
+    else:
+        share = load_share(body, instant_near(flow, flow.anchor))
+        rubs = share * (alone + apply(block(work.factors, 2 * n + 1, like), u))
+    work.increments[first + IMPULSE] = GAMMA * h * (work.rates[IMPULSE] + rubs)
+
+
+square = by_dimension(lambda x: x * x, lambda x: x.real * x.real + x.imag * x.imag)
+
+
+def _elastic_in_the_plane(body: BodyNumbers, x: complex) -> float:
+    along, across = body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split
+    return along * x.real * x.real + across * x.imag * x.imag
+
+
+_elastic = by_dimension(
+    lambda body, x: (body.stiffness_mean + body.stiffness_split) * x * x, _elastic_in_the_plane
+)
+"""Twice the energy of the springs."""
+
+
+def _scalars_within(flow: Flow, work: Work) -> bool:
+    for k in range(count_of(flow.law)):
+        work.memory[k] = as_memory(flow.law, work.stage[MEMORY + k])
+    return flow.law.within(work.memory)
+
+
+_within = by_scalars(lambda flow, work: True, _scalars_within)
+"""_within(flow, work): whether the law has a rate at ``work.stage``; the age of a contact is never negative."""
+
+
+def _unit_of_impulse(flow: Flow, k: int, work: Work, like: Any) -> float:
+    """What a scalar changes in friction, for a radian; or as a state is measured by it, about its own size."""
+    effect = length(apply(block(work.jacobian, 3 * k + 2, like), 1.0 + 0.0 * like))
+    here = length(work.start[MEMORY + k])
+    return max(
+        effect * flow.body.normal_load / flow.body.frequency, LITTLE * work.unit[k] / max(here, work.size[k])
+    )
+
+
+_unit = by_scalars(lambda flow, k, work, like: work.unit[k], _unit_of_impulse)
+"""_unit(flow, k, work, like): what the error of a number is multiplied by."""
+
+
+@inner
+def _error(flow: Flow, work: Work, like: Any) -> float:
+    """The difference to the embedded method of order 4 in the norm of energy, the impulse's too."""
+    n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
+    last = rows_of(flow) * (STAGES - 1)
+    error = _elastic(body, work.increments[last + Y])
+    velocity = error_told(flow.law, work, work.increments[last + U])
+    error += velocity * velocity
+    error += square(body.normal_load * work.increments[last + IMPULSE])
+    for k in range(n):
+        error += square(_unit(flow, k, work, like) * work.increments[last + MEMORY + k])
+    for k in range(m):
+        error += square(energy_unit(body, k) * work.increments[last + MEMORY + n + k])
+    return math.sqrt(error)
+
+
+@inner
+def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
+    """One step from ``work.start`` to ``work.end``; returns its error in the norm of energy, the impulse's too.
+
+    It starts at the anchor of the flow. The error is infinite where a scalar has left its set on the way.
+    """
+    size = rows_of(flow)
+    factor(flow, h, work, like)
+    now, taken = instant_near(flow, tau), work.start[U]
+    for i in range(STAGES):
+        # stages 6 to 8 are all at the end of the step: its sine and cosine serve them
+        _argument(i, flow, work)
+        if not _within(flow, work):
+            return math.inf
+        taken = work.stage[U]
+        work.stage[U] = velocity_told(flow.law, work, taken)
+        if 0 < i < SIMULTANEOUS:
+            now = instant_near(flow, tau + TIMES[i] * h)
+        fill_rates(flow, now, work, like)
+        if creeps(flow.law, work):
+            work.rates[IMPULSE] = work.rates[IMPULSE] + work.rates[U] / flow.body.normal_load
+        work.rates[U] = rate_taken(flow.law, work, work.stage[U], work.rates[U])
+        _right_side(i, flow, h, work)
+        _solve(i, flow, h, work, like)
+    # the last increment is the difference to the embedded method, and ends the step
+    last = size * (STAGES - 1)
+    for row in range(size):
+        work.end[row] = work.stage[row] + work.increments[last + row]
+    work.end[U] = velocity_told(flow.law, work, taken + work.increments[last + U])
+    if creeps(flow.law, work):
+        work.end[IMPULSE] = work.end[IMPULSE] - (work.end[U] - work.start[U]) / flow.body.normal_load
+    return _error(flow, work, like)
+
+
+@inner
+def bend(flow: Flow, work: Work) -> None:
+    """Leave in ``work.bends`` how the last step runs between its ends, as ``within_step`` reads it."""
+    size = rows_of(flow)
+    for i in range(3):
+        for row in range(size):
+            total = DENSE[i, 0] * work.increments[row]
+            for j in range(1, STAGES):
+                total = total + DENSE[i, j] * work.increments[size * j + row]
+            work.bends[size * i + row] = total
+
+
+@inner
+def within_step(flow: Flow, share: float, work: Work) -> None:
+    """Leave in ``work.stage`` the state a share into the last step, whose bends are known."""
+    size, rest = rows_of(flow), 1.0 - share
+    for row in range(size):
+        bent = work.bends[row] + share * (work.bends[size + row] + share * work.bends[2 * size + row])
+        end = work.end[row] if row != U else velocity_taken(flow.law, work, work.end[row])
+        work.stage[row] = rest * work.start[row] + share * (end + rest * bent)
+    # a polynomial may leave the set of a scalar's values, a straight line does not
+    if not _within(flow, work):
+        for row in range(size):
+            work.stage[row] = rest * work.start[row] + share * work.end[row]
+    else:
+        work.stage[U] = velocity_told(flow.law, work, work.stage[U])

@@ -1,0 +1,93 @@
+"""Errors of the energies of one period, from how well the recorded motion closes and agrees with itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.scene.body import Mass
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.values.quantities import Floats
+
+FOR_ERRORS = "duration", "open_ends", "swing", "misfit_load", "misfit_speed"
+"""What is read from an orbit for them: its period, the distance of its end from its beginning in the norm of energy,
+the root mean square of its velocity, and by what velocities and positions differ in every panel, times its largest
+load and its largest speed."""
+_REACH = 3.0
+"""How much farther from the steady state a motion may be than what it leaves open, carried on, says."""
+_SHARE = 0.3
+"""Of the distance that the error of the mean friction stands for; most of that bound is caution."""
+_ROUNDING = 1e-14
+
+
+class Means(NamedTuple):
+    """The mean friction along x1 that a method found and the bound on its error [n].
+
+    balanced: whether the method's motions obey the equation of motion, but for errors that shrink with the tolerance.
+    """
+
+    value: Floats
+    error: Floats
+    balanced: bool = True
+
+
+def energy_errors(
+    scenes: Sequence[Scene], mass: Mass, means: Means, read: Mapping[str, Floats]
+) -> dict[str, Floats]:
+    """Bounds on the errors of the energies of orbits of these scenes, estimated; NaN where nothing is known.
+
+    The velocity may be wrong by what the orbit leaves open, carried on for as long as the dashpots let a disturbance
+    live, and by what the error of the mean stands for. To it add, panel by panel, what velocities and positions
+    disagree about, and how far the energies are from closing.
+    """
+    period, swing = read["duration"], read["swing"]
+    wrong = _REACH * read["open_ends"] * _reach(scenes[0], mass, period)
+    wrong = wrong + _SHARE * mass.normal_load * means.error * period  # integral of the velocity's error
+    load = _largest_load(scenes[0], mass)
+    damping = max(mass.damping, mass.transverse_damping if scenes[0].degrees_of_freedom == 2 else 0.0)
+    put_in = 2.0 * read["misfit_load"] + load * (wrong + _ROUNDING * swing * period)
+    viscous = damping * (4.0 * read["misfit_speed"] + 2.0 * wrong * (swing + wrong / period))
+    viscous = viscous + _ROUNDING * damping * swing**2 * period
+    belt = np.abs(belt_speeds_of(scenes))
+    force = (
+        mass.normal_load * (np.abs(read["mean_friction"] - means.value) + means.error + _ROUNDING) * period
+    )
+    if scenes[0].degrees_of_freedom:
+        missing = np.abs(read["energy_input"] - read["energy_viscous"] - read["energy_friction"])
+        friction = missing + put_in + viscous
+    else:  # the motion is given: friction alone can be wrong
+        friction = 4.0 * force * swing
+    if scenes[0].remembers:  # read as what the load gives less what friction takes
+        friction = put_in + belt * force + _ROUNDING * np.abs(read["energy_friction"])
+        viscous = put_in + friction
+    contact = friction + force * belt
+    found = {"input": put_in, "viscous": viscous, "friction": friction, "contact": contact}
+    return {
+        f"energy_{name}_error": error + (0.0 if means.balanced else np.nan) for name, error in found.items()
+    }
+
+
+def _largest_load(scene: Scene, mass: Mass) -> float:
+    if scene.is_harmonic or not scene.degrees_of_freedom:
+        return abs(mass.force) + abs(mass.transverse_force)
+    signals = scene.signals()
+    return sum(max(map(abs, each.extremes(signals.period))) for each in signals.load)
+
+
+def _reach(scene: Scene, mass: Mass, period: Floats) -> Floats:
+    """How long a disturbance of the motion lives, between half a period and ten."""
+    bodies = [(mass.damping, mass.stiffness)]
+    if scene.degrees_of_freedom == 2:
+        bodies.append((mass.transverse_damping, mass.transverse_stiffness))
+    decay = min(_decay(0.5 * damping, stiffness) for damping, stiffness in bodies)
+    return np.clip(1.0 / decay if decay > 0.0 else math.inf, 0.5 * period, 10.0 * period)
+
+
+def _decay(rate: float, stiffness: float) -> float:
+    """The slower rate at which a free oscillation dies."""
+    beyond = rate**2 - stiffness
+    return rate if beyond <= 0.0 else stiffness / (rate + math.sqrt(beyond))

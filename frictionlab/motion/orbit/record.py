@@ -1,0 +1,63 @@
+"""One period of a steady state in smooth pieces, and many of them one after another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.values.quantities import Floats
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """One period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
+
+    tau [panels, nodes] increases; x, v, friction [panels, nodes] are complex (x1 + i x2), friction being the
+    coefficient along the slip velocity (what resists), NaN in a direction of which nothing is known; stick [panels]
+    marks pieces at rest on the belt, None where the method cannot tell rest. periods: how many it holds, more than
+    one where the steps of a method keep the motion from repeating so soon.
+    """
+
+    tau: Floats
+    x: NDArray[np.complex128]
+    v: NDArray[np.complex128]
+    friction: NDArray[np.complex128]
+    stick: NDArray[np.bool_] | None
+    periods: int = 1
+
+
+@dataclass(frozen=True)
+class Orbits:
+    """Orbits one after another, their panels in one array each; those of orbit k end before panel ends[k]."""
+
+    tau: Floats
+    x: NDArray[np.complex128]
+    v: NDArray[np.complex128]
+    friction: NDArray[np.complex128]
+    stick: NDArray[np.bool_]
+    ends: NDArray[np.int64]
+
+    def one(self, k: int) -> Orbit | None:
+        """Orbit k; None where it has no panels."""
+        panels = slice(self.ends[k - 1] if k else 0, self.ends[k])
+        if panels.start == panels.stop:
+            return None
+        return Orbit(*(part[panels] for part in self._parts))
+
+    def and_those_of(self, other: Orbits) -> Orbits:
+        """All orbits that either has; of each at most one has panels."""
+        if not other.ends.any():
+            return self
+        first, second = np.diff(self.ends, prepend=0), np.diff(other.ends, prepend=0)
+        owner = np.repeat(np.arange(len(first)), first), np.repeat(np.arange(len(second)), second)
+        order = np.argsort(np.concatenate(owner), kind="stable")
+        pairs = zip(self._parts, other._parts, strict=True)
+        tau, x, v, friction, stick = (np.concatenate(pair)[order] for pair in pairs)
+        return Orbits(tau, x, v, friction, stick, np.cumsum(first + second))
+
+    @property
+    def _parts(self) -> tuple[Any, ...]:
+        return self.tau, self.x, self.v, self.friction, self.stick

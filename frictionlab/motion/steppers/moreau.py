@@ -1,0 +1,141 @@
+"""Moreau-Jean: one step at velocity level, friction's impulse projected on its disk; springs and dashpots implicit.
+
+Over a step of length h the balance of momentum reads, along each axis,
+
+    v1 - v0 = h (load - damping v_theta - stiffness x_theta) - P,   x1 = x0 + h v_theta,
+
+with v_theta = theta v1 + (1 - theta) v0, x_theta likewise, load and normal load taken at that instant, and P the
+impulse of friction. Where the impulse that brings the slip to zero at the end of the step lies in the disk of radius
+h*normal_load*(static coefficient), it is taken: the mass sticks. Otherwise P lies on the disk of the sliding
+coefficient, along the slip w_theta and with the coefficient at that speed, both found with the step: nothing is
+lagged. (Directed by the slip at the end of the step, the scheme is of order one wherever friction turns, for
+theta = 1/2 too.) Stable for theta >= 1/2 however long the step. J. J. Moreau, in Nonsmooth Mechanics and
+Applications (1988); M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.motion.steppers.step import FIRST, LAST, StepEnd, StepStart, belt_at, load_at, normal_load_at
+
+MOST_TRIALS = 60
+TINY = 1e-300
+SMALL = 2e-15
+"""Relative to the impulse or the speed; about what rounding leaves."""
+
+
+class ContactStep(NamedTuple):
+    """The contact over one step: slip w and impulse P with mass_1 w1 + P1 = q1, mass_2 w2 + P2 = q2."""
+
+    law: Any
+    weight: float  # normal load times step
+    mass_1: float
+    mass_2: float
+
+
+class ContactEnd(NamedTuple):
+    """Slip velocity and impulse at the end of a step."""
+
+    w: Any
+    impulse: Any
+
+
+over = by_dimension(lambda a, b, q: q / a, lambda a, b, q: complex(q.real / a, q.imag / b))
+"""q with its components along x1 and x2 divided by a and b."""
+
+momentum = by_dimension(
+    lambda mass_1, mass_2, velocity: mass_1 * velocity,
+    lambda mass_1, mass_2, velocity: complex(mass_1 * velocity.real, mass_2 * velocity.imag),
+)
+"""momentum(mass_1, mass_2, velocity): a velocity with its components times the masses along x1 and x2."""
+
+
+@inner
+def _excess(contact: ContactStep, speed: float, q: Any) -> float:
+    """Above zero where a slip of this speed takes more than q; linear in speed for one mass and constant friction."""
+    rub = contact.weight * contact.law.sliding_friction(speed)
+    return 1.0 / length(over(contact.mass_1 * speed + rub, contact.mass_2 * speed + rub, q)) - 1.0
+
+
+@inner
+def _slip_speed(contact: ContactStep, q: Any) -> float:
+    """The speed of slip at the end of the step (Illinois regula falsi on a bracket that always holds).
+
+    The first guess is exact for constant friction and one mass.
+    """
+    size = length(q)
+    low, high = 0.0, size / min(contact.mass_1, contact.mass_2)
+    nothing = SMALL * high
+    # Two fixed-point steps: exact already for constant friction and one mass.
+    speed = max((size - contact.weight * contact.law.sliding_friction(0.0)) / contact.mass_1, 0.0)
+    speed = max((size - contact.weight * contact.law.sliding_friction(speed)) / contact.mass_1, 0.0)
+    value = _excess(contact, min(speed, high), q)
+    if abs(value) <= SMALL:
+        return min(speed, high)
+    # Regula falsi; an end that stays twice has its value halved, else the other end would creep (Illinois).
+    at_low, at_high, side = _excess(contact, low, q), _excess(contact, high, q), 0
+    speed = min(speed, high)
+    for _ in range(MOST_TRIALS):
+        if value > 0.0:
+            high, at_high, at_low = speed, value, 0.5 * at_low if side > 0 else at_low
+            side = 1
+        else:
+            low, at_low, at_high = speed, value, 0.5 * at_high if side < 0 else at_high
+            side = -1
+        last = speed
+        speed = (low * at_high - high * at_low) / (at_high - at_low)
+        if not abs(speed - last) > nothing:
+            break
+        value = _excess(contact, speed, q)
+        if abs(value) <= SMALL:
+            break
+    return speed
+
+
+@inner
+def project_impulse(contact: ContactStep, theta: float, before: Any, q: Any) -> ContactEnd:
+    """Slip at the end of the step and impulse of a contact that is pushed by q; before: the slip it began with."""
+    # What brings the slip to zero at the end of the step lies in the disk of the static coefficient: it sticks.
+    if length(q) <= contact.weight * contact.law.static_friction():
+        return ContactEnd(0.0 * q, q)
+    # Otherwise friction is directed by the slip theta into the step, for which the same balance is written.
+    share = (1.0 - theta) / theta
+    late = ContactStep(contact.law, contact.weight, contact.mass_1 / theta, contact.mass_2 / theta)
+    pushed = q + over(1.0 / (share * contact.mass_1 + TINY), 1.0 / (share * contact.mass_2 + TINY), before)
+    # That slip vanishes where the push on it is within the disk of the sliding coefficient: the step passes rest.
+    if length(pushed) <= contact.weight * contact.law.sliding_friction(0.0):
+        return ContactEnd(-share * before, pushed)
+    speed = _slip_speed(late, pushed)
+    rub = contact.weight * contact.law.sliding_friction(speed)
+    along = over(late.mass_1 * speed + rub, late.mass_2 * speed + rub, pushed)
+    return ContactEnd(speed / theta * along - share * before, rub * along)
+
+
+@inner
+def moreau_step(expanded: Any, slopes_at: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
+    """One step over h.
+
+    slopes_at(body, x, v) is the linear body beside this motion, whose springs and dashpots act along each axis for
+    itself, expanded(body, x, v, ahead, later) its force on another position and velocity.
+    """
+    theta, x, v = problem.stepper.theta, start.x, start.v
+    late, left, body = theta * h, 1.0 - theta, slopes_at(problem.body, x, v)
+    # The mass that an impulse moves along either axis: springs and dashpots are implicit, and add to it.
+    mass_1 = 1.0 + late * (body.damping_mean + body.damping_split)
+    mass_1 += late * late * (body.stiffness_mean + body.stiffness_split)
+    mass_2 = 1.0 + late * (body.damping_mean - body.damping_split)
+    mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
+    # Loads are those of the instant theta into the step: its middle or its end.
+    k, part = start.k, int(2.0 * theta)
+    held = expanded(problem.body, x, v, x + late * left * v, left * v)
+    pushed = v + h * (load_at(problem, k, part) - held)
+    pressed, belt = normal_load_at(problem, k, part), belt_at(problem, k, LAST)
+    contact = ContactStep(problem.law, h * pressed, mass_1, mass_2)
+    # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.
+    pushed = pushed - momentum(mass_1, mass_2, belt)
+    w, impulse = project_impulse(contact, theta, v - belt_at(problem, k, FIRST), pushed)
+    after = w + belt
+    return StepEnd(x + late * after + h * left * v, after, impulse / body.normal_load, length(w) == 0.0, 1.0)

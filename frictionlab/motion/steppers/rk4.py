@@ -1,0 +1,59 @@
+"""The classical Runge-Kutta method of order 4 (W. Kutta, 1901) for a mass and what its contact remembers.
+
+x'' = a(tau, x, x', z), z' = r(x', z) with z of no, one or several numbers. Explicit: a step is short enough while
+step * rate <= 2.785 for every rate at which something decays, and step * frequency <= 2.828 for every frequency that
+nothing damps. Without event location: where friction jumps inside a step, the step is of order one with irregular
+errors, since the weighted mean of four rates does not depend on the time of the jump; where the rate of a memory has
+a corner, the order falls to two.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.stack import count_of, room
+from frictionlab.motion.steppers.step import FIRST, LAST, MIDDLE, StepEnd, StepStart
+
+DECAY = 2.785
+"""Largest step times rate of decay: where the stability polynomial leaves the unit disk on the real axis."""
+
+
+@inner
+def rk4_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
+    """One step over h; ``rates(problem, k, part, x, v, memory, moving)`` = (x'', friction) writes z' into ``moving``.
+
+    part is a node of the k-th step. It has no stick phases: a step never ends at rest.
+    """
+    law, memory, k, x, v = problem.law, problem.memory, start.k, start.x, start.v
+    n, half, sixth = count_of(law), 0.5 * h, h / 6.0
+    stage, rate, total = room(law, 1, 0, memory[0]), room(law, 1, 0, memory[0]), room(law, 1, 0, memory[0])
+    a1, f1 = rates(problem, k, FIRST, x, v, memory, rate)
+    # The first half step: at the rates of the start.
+    v2 = v + half * a1
+    for i in range(n):
+        total[i] = rate[i]
+        stage[i] = memory[i] + half * rate[i]
+    a2, f2 = rates(problem, k, MIDDLE, x + half * v, v2, stage, rate)
+    # The same half step anew, at the rates found there.
+    v3 = v + half * a2
+    for i in range(n):
+        total[i] = total[i] + 2.0 * rate[i]
+        stage[i] = memory[i] + half * rate[i]
+    a3, f3 = rates(problem, k, MIDDLE, x + half * v2, v3, stage, rate)
+    # The whole step, at the rates of its middle.
+    v4 = v + h * a3
+    for i in range(n):
+        total[i] = total[i] + 2.0 * rate[i]
+        stage[i] = memory[i] + h * rate[i]
+    a4, f4 = rates(problem, k, LAST, x + h * v3, v4, stage, rate)
+    # Simpson's weights; the sum of z' is kept as it grows, for there may be many numbers.
+    for i in range(n):
+        problem.ahead[i] = memory[i] + sixth * (total[i] + rate[i])
+    return StepEnd(
+        x + sixth * (v + 2.0 * v2 + 2.0 * v3 + v4),
+        v + sixth * (a1 + 2.0 * a2 + 2.0 * a3 + a4),
+        sixth * (f1 + 2.0 * f2 + 2.0 * f3 + f4),
+        False,
+        1.0,
+    )

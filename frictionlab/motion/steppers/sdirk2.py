@@ -1,0 +1,188 @@
+"""SDIRK2: a singly diagonally implicit Runge-Kutta method of order 2 in two stages, L-stable and stiffly accurate.
+
+R. Alexander, SIAM J. Numer. Anal. 14 (1977), 1006: gamma = 1 - 1/sqrt(2),
+
+    Y1 = y + h gamma f(Y1),   Y2 = y + h (1 - gamma) f(Y1) + h gamma f(Y2),   y is Y2 at the end,
+
+with y = (x, x', z): mass and bristles together, x eliminated. Each stage is solved by Newton's method with a
+difference Jacobian of the rates; a step in which that fails is halved, repeatedly if necessary.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.motion.linalg import solve_linear
+from frictionlab.motion.steppers.step import StepEnd, StepStart
+
+GAMMA = 1.0 - math.sqrt(0.5)
+MOST_TRIALS = 30
+MOST_HALVINGS = 24
+MOST_PARTS = 10_000
+"""Parts of one step that are tried; a contact that needs more is too stiff for it."""
+CLOSE = 1e-10
+"""Relative size of the last Newton step; convergence is quadratic, so the remaining error is negligible."""
+NUDGE = 1e-6
+"""Relative step of the difference quotients."""
+
+
+class DeflectedState(NamedTuple):
+    """Position, velocity, deflection, and the integral of the friction coefficient since the step began."""
+
+    x: Any
+    v: Any
+    z: Any
+    impulse: Any
+
+
+class Stage(NamedTuple):
+    """V = v + g x''(tau, x + g V, V, Z), Z = z + g z'(V, Z); quick, deep: scales of velocity and deflection."""
+
+    tau: float
+    g: float
+    x: Any
+    v: Any
+    z: Any
+    quick: float
+    deep: float
+
+
+class StageSolution(NamedTuple):
+    """Velocity and deflection of a stage, and whether Newton's method converged."""
+
+    v: Any
+    z: Any
+    converged: bool
+
+
+class Gap(NamedTuple):
+    """The residual of the equations of a stage; as a change, what Newton's method adds to velocity and deflection."""
+
+    v: Any
+    z: Any
+
+
+@inner
+def gap_of(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Gap:
+    """What velocity and deflection miss the equations of a stage by."""
+    a, _, r = rates(problem, stage.tau, stage.x + stage.g * v, v, z)
+    return Gap(v - stage.v - stage.g * a, z - stage.z - stage.g * r)
+
+
+@inner
+def nudges(stage: Stage) -> tuple[float, float]:
+    """Steps of the difference quotients; that of velocity is small against full deflection in the stage, too."""
+    return NUDGE * min(stage.quick, stage.deep / stage.g), NUDGE * stage.deep
+
+
+def _change_on_the_line(rates: Any, problem: Any, stage: Stage, z: float, at: Gap, v: float) -> Gap:
+    # Two equations in two unknowns, by Cramer's rule; quotients of differences are their derivatives.
+    dv, dz = nudges(stage)
+    one, two = gap_of(rates, problem, stage, v + dv, z), gap_of(rates, problem, stage, v, z + dz)
+    a, b, c, d = (one.v - at.v) / dv, (two.v - at.v) / dz, (one.z - at.z) / dv, (two.z - at.z) / dz
+    det = a * d - b * c
+    return Gap((b * at.z - d * at.v) / det, (c * at.v - a * at.z) / det)
+
+
+def _change_in_the_plane(rates: Any, problem: Any, stage: Stage, z: complex, at: Gap, v: complex) -> Gap:
+    matrix, right = np.empty((4, 4)), np.empty(4)
+    dv, dz = nudges(stage)
+    # Complex numbers are two real ones here: friction need not be analytic in the slip. A column is the derivative
+    # by one part of v, then of z.
+    for column in range(4):
+        turn = complex(0.0, 1.0) if column % 2 == 1 else complex(1.0, 0.0)
+        step = dv if column < 2 else dz
+        nudged = (
+            gap_of(rates, problem, stage, v + step * turn, z)
+            if column < 2
+            else gap_of(rates, problem, stage, v, z + step * turn)
+        )
+        by_v, by_z = (nudged.v - at.v) / step, (nudged.z - at.z) / step
+        matrix[0, column], matrix[1, column] = by_v.real, by_v.imag
+        matrix[2, column], matrix[3, column] = by_z.real, by_z.imag
+    right[0], right[1], right[2], right[3] = -at.v.real, -at.v.imag, -at.z.real, -at.z.imag
+    solve_linear(matrix, right)
+    return Gap(complex(right[0], right[1]), complex(right[2], right[3]))
+
+
+newton_change = by_dimension(_change_on_the_line, _change_in_the_plane)
+"""newton_change(rates, problem, stage, z, gap, v): the full step of Newton's method from v, z."""
+
+
+@inner
+def size_of(stage: Stage, of: Gap) -> float:
+    """A gap or a change over the scales of velocity and deflection."""
+    return length(of.v) / stage.quick + length(of.z) / stage.deep
+
+
+@inner
+def solve_stage(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> StageSolution:
+    """Damped Newton's method from a guess."""
+    at = gap_of(rates, problem, stage, v, z)
+    missed = size_of(stage, at)
+    for _ in range(MOST_TRIALS):
+        way, part = newton_change(rates, problem, stage, z, at, v), 1.0
+        # A singular Jacobian gives an infinite or undefined step.
+        if not size_of(stage, way) < 1e300:
+            return StageSolution(v, z, False)
+        ahead = gap_of(rates, problem, stage, v + way.v, z + way.z)
+        # Halve the Newton step until the residual decreases; at a thousandth it is taken as it is.
+        while part > 1e-3 and not size_of(stage, ahead) < missed:
+            part = 0.5 * part
+            ahead = gap_of(rates, problem, stage, v + part * way.v, z + part * way.z)
+        v, z, at, missed = v + part * way.v, z + part * way.z, ahead, size_of(stage, ahead)
+        if part * size_of(stage, way) <= CLOSE or missed == 0.0:
+            return StageSolution(v, z, True)
+    return StageSolution(v, z, False)
+
+
+@inner
+def two_stages(
+    rates: Any, problem: Any, tau: float, start: DeflectedState, h: float, swing: float
+) -> tuple[DeflectedState, bool]:
+    """One step, and whether both of its stages converged; swing: by how much the belt's velocity varies."""
+    # Scales of this step: of velocity from body and slip, of deflection from what slip can do within the step.
+    g, late = GAMMA * h, (1.0 - GAMMA) * h
+    x, v, z = start.x, start.v, start.z
+    quick = length(v) + length(v - problem.belt_speed) + length(x) * 1e-3 + 1e-9 + swing
+    deep = min(problem.law.largest_deflection(), length(z) + h * quick)
+    first = solve_stage(rates, problem, Stage(tau + g, g, x, v, z, quick, deep), v, z)
+    # Stiffly accurate: the second stage is the state at the end of the step.
+    a1, f1, r1 = rates(problem, tau + g, x + g * first.v, first.v, first.z)
+    base = Stage(tau + h, g, x + late * first.v, v + late * a1, z + late * r1, quick, deep)
+    last = solve_stage(rates, problem, base, first.v, first.z)
+    after = base.x + g * last.v
+    f2 = rates(problem, tau + h, after, last.v, last.z)[1]
+    impulse = start.impulse + late * f1 + g * f2
+    return DeflectedState(after, last.v, last.z, impulse), first.converged and last.converged
+
+
+@inner
+def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float, swing: float) -> StepEnd:
+    """One step over h, for a law of one deflection; ``rates(problem, tau, x, v, z)`` = (x'', friction, z').
+
+    swing: by how much the belt's velocity varies.
+
+    Steps in which Newton's method fails are halved; the state is NaN if even 2^-24 of the step fails, or too many.
+    """
+    # Parts of the step, each a half of the one that failed: what is done is kept.
+    state = DeflectedState(start.x, start.v, problem.memory[0], 0.0 * start.v)
+    done, part, least, tried = 0.0, h, h * 0.5**MOST_HALVINGS, 0
+    while done < h * (1.0 - 1e-9):
+        ahead, converged = two_stages(rates, problem, start.tau + done, state, part, swing)
+        tried += 1
+        if tried > MOST_PARTS or (not converged and part <= least):
+            nothing = math.nan * start.v
+            state = DeflectedState(math.nan * start.x, nothing, math.nan * state.z, nothing)
+            break
+        if not converged:
+            part = 0.5 * part
+            continue
+        state, done = ahead, done + part
+    problem.ahead[0] = state.z
+    return StepEnd(state.x, state.v, state.impulse, False, 1.0)

@@ -1,1 +1,0 @@
-"""What Python users hold: laws compared on a scene, with tables, arrays and pages."""

@@ -1,1 +1,0 @@
-"""Belt speeds at which the kind of a steady motion changes."""

@@ -1,0 +1,241 @@
+"""What the explorer shows of a run: its curves with errors, the swept quantities that select among them.
+
+Also the scenes that the page's own solver takes for these curves.
+
+The explorer: one HTML file that needs nothing else, made of the parts beside this module.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable
+from html import escape, unescape
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pandas as pd
+
+from frictionlab import __version__
+from frictionlab.charts.curves import CurveData, Family, family_of
+from frictionlab.report.question import scene_sentences
+from frictionlab.report.tables import html
+from frictionlab.runner.curve_loads import scene_of
+from frictionlab.runner.files import FolderError
+from frictionlab.runner.folder import check_page, write_page
+from frictionlab.runner.saved import Saved
+from frictionlab.runner.words import counted
+from frictionlab.values.columns import is_belt_speed, word
+from frictionlab.values.units import in_shown_units
+
+RATIOS = "velocity_ratio", "normalized_friction"
+Quantity = tuple[str, str]
+"""A swept input and the law whose parameter it is, "" for one of the scene."""
+
+
+def run_data(saved: Saved) -> dict[str, Any]:
+    """The curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
+    family = family_of(in_shown_units(saved.table, saved.study.units))
+    if family is None:
+        raise FolderError(f"{saved.folder}: its study sweeps no number, so there is no curve to explore")
+    swept = _swept(family)
+    looks = list(dict.fromkeys((curve.law, curve.method) for curve in family.curves if _has_numbers(curve)))
+    places = sorted({float(value) for curve in family.curves for value in curve.rows[family.abscissa]})
+    curves = [_curve(curve, family.abscissa, swept, looks) for curve in family.curves]
+    return {
+        "abscissa": {"label": label(family.abscissa), "values": places},
+        "swept": [{"label": label(*quantity), "values": values} for quantity, values in swept.items()],
+        "curves": curves,
+        "start": _start(curves, places[(len(places) - 1) // 2]),
+    }
+
+
+def _start(curves: list[dict[str, Any]], speed: float) -> dict[str, float] | None:
+    """What the sliders of the page's solver begin with: the first scene shown that it solves, to six digits."""
+    shown = (curve["coulomb"] for curve in curves if curve["coulomb"] and not any(curve["at"]))
+    if (first := next(shown, None)) is None:
+        return None
+    chosen = {name: first[name] for name in ("frequency", "damping", "friction")}
+    return {
+        name: float(f"{value:.6g}") for name, value in {**chosen, "belt": abs(speed) / first["limit"]}.items()
+    }
+
+
+def label(name: str, law: str = "") -> str:
+    """Words, symbol and unit of an input, and the law it belongs to; subscripts after "_"."""
+    marked = str(html(word(name))).replace("<sub>", "_{").replace("</sub>", "}")
+    plain = unescape(re.sub(r"<[^>]*>", "", marked))
+    return f"{plain[:1].upper()}{plain[1:]}{f' of {law}' if law else ''}"
+
+
+def _has_numbers(curve: CurveData) -> bool:
+    """Whether any point can be drawn: a mean, or the range of one that is not unique."""
+    return bool(curve.rows.reindex(columns=["mean_friction", "mean_low"]).notna().to_numpy().any())
+
+
+def _settings(curve: CurveData) -> dict[Quantity, float | str]:
+    """What selects a curve among those of its law and method."""
+    given = [*curve.panel, *([] if curve.member is None else [curve.member])]
+    return {
+        (name, curve.law if name.startswith("law.") else ""): value
+        for name, value in given
+        if value is not None
+    }
+
+
+def _swept(family: Family) -> dict[Quantity, list[float | str]]:
+    """The swept quantities beside the abscissa, each with its values: numbers ascending, words as they come."""
+    found: dict[Quantity, dict[float | str, None]] = {}
+    for curve in family.curves:
+        for quantity, value in _settings(curve).items():
+            found.setdefault(quantity, {})[value] = None
+    return {quantity: _in_order(values) for quantity, values in found.items() if len(values) > 1}
+
+
+def _in_order(values: Iterable[float | str]) -> list[float | str]:
+    numbers = [value for value in values if not isinstance(value, str)]
+    return [*sorted(numbers), *(value for value in values if isinstance(value, str))]
+
+
+def _curve(
+    curve: CurveData,
+    abscissa: str,
+    swept: dict[Quantity, list[float | str]],
+    looks: list[tuple[str, str]],
+) -> dict[str, Any]:
+    """One curve.
+
+    at: for each swept quantity the index of its value, None where the law does not have it. look: a number for each
+    law and method, None where no point of the two can be drawn. coulomb: the scene for the page's solver, None where
+    it takes none.
+    """
+    settings, rows, solved = _settings(curve), curve.rows, page_scene(curve, abscissa)
+    at = [
+        values.index(settings[quantity]) if quantity in settings else None
+        for quantity, values in swept.items()
+    ]
+    return {
+        "law": curve.law,
+        "method": curve.method,
+        "look": looks.index(pair) if (pair := (curve.law, curve.method)) in looks else None,
+        "at": at,
+        "x": _numbers(rows[abscissa]),
+        "mean": _numbers(rows["mean_friction"]),
+        "error": _numbers(rows["error"]),
+        "low": _numbers(rows.get("mean_low")) or [None] * len(rows),
+        "high": _numbers(rows.get("mean_high")) or [None] * len(rows),
+        "status": rows["status"].astype(str).tolist(),
+        "kink": _kink(curve),
+        "coulomb": solved and solved._asdict(),
+    }
+
+
+def _kink(curve: CurveData) -> float | None:
+    return curve.kinks[-1] if curve.kinks else None
+
+
+def _numbers(column: pd.Series | None) -> list[float | None]:
+    """A column as JSON can hold it."""
+    found = [] if column is None else column.astype(float).tolist()
+    return [value if math.isfinite(value) else None for value in found]
+
+
+# --- the scenes that the page solves itself -----------------------------------------------------------------------
+
+
+class PageScene(NamedTuple):
+    """One degree of freedom under one sine, as the page's solver takes it.
+
+    frequency, damping: of the scene, both > 0; friction: mu * normal load over the load's amplitude; mu: of sliding;
+    limit: V_lin in the units of the curve's belt speeds.
+    """
+
+    frequency: float
+    damping: float
+    friction: float
+    mu: float
+    limit: float
+
+
+def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
+    """The scene of a curve over belt speed; None where it is none that the page solves.
+
+    It solves a body along the belt, damped, under one sine, with one coefficient of sliding friction.
+    """
+    if not is_belt_speed(abscissa) or any(name not in curve.rows for name in RATIOS):
+        return None
+    scene = scene_of(curve.rows.iloc[0].to_dict())
+    load = 0.0 if scene.drive is None else scene.drive.size(scene.frequency)
+    if scene.degrees_of_freedom != 1 or not scene.is_harmonic or not load or not scene.damping_ratio:
+        return None
+    rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0.0]
+    left = rows["normalized_friction"] != 0.0
+    friction = (rows["mean_friction"] / rows["normalized_friction"])[left].abs()
+    if friction.empty or not friction.max() - friction.min() <= 1e-12 * friction.max():
+        return None
+    limit = float((rows[abscissa] / rows["velocity_ratio"]).median())
+    mu = float(friction.iloc[0])
+    share = mu * (scene.normal_load or 1.0) / abs(load)
+    return PageScene(scene.frequency, scene.damping_ratio, share, mu, limit)
+
+
+PAGE_PARTS = Path(__file__).parent / "explorer_parts"
+OWN_SCENE = "A body on a spring and a dashpot lies on a moving belt, and a load shakes it along the belt."
+TITLE = "Mean friction of a vibrated body on a moving belt"
+
+
+def write_explorer(file: Path, saved: Saved | None = None) -> Path:
+    """Write the page, with the table of a run if one is given; where it is.
+
+    Raises FolderError where a page that a person wrote is in the way or the run sweeps nothing, SaveError.
+    """
+    check_page(file)
+    write_page(file, explorer(saved))
+    return file
+
+
+def explorer(saved: Saved | None = None) -> str:
+    """The page as text. Raises FolderError."""
+    data = None if saved is None else run_data(saved)
+    scripts = ["address.js", "solver.js", "chart.js", "coulomb.js", *([] if data is None else ["run.js"])]
+    values = {
+        "generator": f"frictionlab {__version__}",
+        "title": TITLE,
+        "style": _part("page.css"),
+        "scene": OWN_SCENE if saved is None else escape(scene_sentences(saved.study)),
+        "run": ""
+        if saved is None
+        else _filled("run.html", {"title": escape(saved.title), "sentence": _sentence(saved)}),
+        "data": "" if data is None else _embedded(data),
+        "script": "\n".join(map(_part, scripts)),
+    }
+    return _filled("page.html", values)
+
+
+def _sentence(saved: Saved) -> str:
+    """How many points of which laws and methods there are, as HTML."""
+    table = saved.table
+    shown = counted(len(table), "point")
+    of = f" of {saved.size}, spread over them" if len(table) < saved.size else ""
+    laws, methods = (escape(", ".join(map(str, table[name].unique()))) for name in ("law", "method"))
+    return f"{shown}{of}. Laws: {laws}. Methods: {methods}."
+
+
+def _part(name: str) -> str:
+    return (PAGE_PARTS / name).read_text(encoding="utf-8").strip()
+
+
+def _filled(name: str, values: dict[str, str]) -> str:
+    """A part whose ``{{name}}`` are replaced; what is put in is not looked through again."""
+    first, *rest = _part(name).split("{{")
+    cut = [piece.partition("}}") for piece in rest]
+    return first + "".join(values[key] + after for key, _, after in cut)
+
+
+def _embedded(data: dict[str, Any]) -> str:
+    """Data as a script element that nothing in it can end."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace(
+        "<", "\\u003c"
+    )
+    return f'<script type="application/json" id="run-data">{text}</script>'

@@ -1,1 +1,0 @@
-"""What a run returns: rows, curves, verdicts and their summary."""

@@ -1,0 +1,252 @@
+"""The tables beside the main one: onsets, attractors, harmonics.
+
+The table of onsets of a run: the belt speeds at which its motions change their kind.
+
+The table of attractors: every state that motions end in along the curves of a study, a row per Poincare point.
+
+Of a study that does not ask for it, a row per state of the points that have several.
+
+The table of harmonics: of every kept orbit velocity and friction by harmonics, a row each.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from frictionlab.methods.base import STATISTICAL, Answers, FoundState
+from frictionlab.runner.chunks import Chunk, Task
+from frictionlab.runner.curve_table import curve_inputs
+from frictionlab.runner.part import STATE_NUMBERS, KeptRows, beside_in_si
+from frictionlab.runner.solve import answer
+from frictionlab.runner.table import Inputs, inputs, scales_of_row, slice_of
+from frictionlab.runner.words import column_in_si_words
+from frictionlab.scene.scenes import Scenes
+from frictionlab.study.grid import StudyCurve
+from frictionlab.study.study import Study
+from frictionlab.theory.rest import is_convergent
+from frictionlab.values.columns import (
+    ALSO_IN_SI,
+    ATTRACTORS,
+    BELT_SPEED,
+    HARMONICS,
+    OF_MULTIPLIERS,
+    OF_REST,
+    OF_STATES,
+    ONSETS,
+)
+from frictionlab.values.quantities import Floats
+
+if TYPE_CHECKING:
+    from frictionlab.curves.onsets import Onset
+
+
+READ_FOR_ONSETS = frozenset([*OF_REST, *OF_MULTIPLIERS])
+_FEWEST = 2000
+"""Motions of all curves together, however few points a run has."""
+_SHARE = 8
+"""Points of a run for each motion that is solved for, where they are many."""
+
+
+def onset_table(study: Study, table: pd.DataFrame) -> pd.DataFrame:
+    """One row per onset of the curves of driven masses, curve by curve in the order of the study.
+
+    table: that of the run, or its inputs and ``READ_FOR_ONSETS``; what lacks columns has no rows. Onsets are
+    found between the belt speeds > 0 of a curve.
+    """
+    keys = curve_inputs(table.columns)
+    curves = [each for each in study.curves() if _is_followed(each)]
+    if not curves or not len(table):
+        return _frame([], [], keys)
+    points = sum(len(each.rows) for each in curves)
+    most = max(_FEWEST, points // _SHARE) // len(curves)
+    found, heads, scales = [], [], []
+    for each in curves:
+        own = _onsets(each, table.iloc[slice_of(each.rows)], study.tolerance, most)
+        found += own
+        heads += [each.rows.start] * len(own)
+        scales += [_speed_scale(each)] * len(own)
+    onsets = _frame(found, heads, keys, table)
+    units = {} if curves[0].scenes.scene.dimensional is None else {"velocity": np.array(scales)}
+    return onsets.assign(how=column_in_si_words(onsets["how"], units), **beside_in_si(onsets, units))
+
+
+def _speed_scale(curve: StudyCurve) -> float:
+    si = curve.scenes.scene.dimensional
+    return 1.0 if si is None else si.scales.velocity
+
+
+def lacks_multipliers(study: Study, table: pd.DataFrame) -> bool:
+    """Whether onsets of multipliers would be missed, since the table was not asked for what they are found from."""
+    return not set(OF_MULTIPLIERS) <= set(table.columns) and any(
+        _is_followed(each) and _may_lose_stability(each) for each in study.curves()
+    )
+
+
+def _is_followed(curve: StudyCurve) -> bool:
+    """Whether a mass is driven, at more than one belt speed."""
+    scene = curve.scenes.scene
+    return scene.degrees_of_freedom > 0 and not scene.undriven and len(curve.rows) > 1
+
+
+def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
+    found = []
+    if curve.given_law.memory_kind == "none" and set(OF_REST) <= set(rows.columns):
+        found += _onsets_of_rest(curve, rows, tolerance, most)
+    if _may_lose_stability(curve) and set(OF_MULTIPLIERS) <= set(rows.columns):
+        found += _onsets_of_multipliers(curve, rows, tolerance, most)
+    return found
+
+
+def _onsets_of_rest(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
+    from frictionlab.curves.motions import CurveMotions
+    from frictionlab.curves.onsets import KnownRow, onsets_along  # brings numba: only where it is needed
+
+    speeds = curve.scenes.belt_speeds
+    stick, reversals = (rows[name].to_numpy(dtype=float) for name in OF_REST[1:])
+    known = {
+        float(speeds[i]): KnownRow(float(speeds[i]), stick[i] > 0.0, stick[i] > 0.0 or reversals[i] > 0.0)
+        for i in np.flatnonzero((rows["status"] == "ok").to_numpy() & (speeds > 0.0)).tolist()
+        if math.isfinite(stick[i]) and math.isfinite(reversals[i])
+    }
+    ascending = [known[speed] for speed in sorted(known)]
+    scene, law, method = curve.scenes.scene, curve.law, curve.method.method
+    solve = partial(_solved, curve, tolerance)
+    return onsets_along(CurveMotions(scene, law, solve, method.resolves_events), ascending, most)
+
+
+def _may_lose_stability(curve: StudyCurve) -> bool:
+    """Whether no theorem makes every motion attract, and the method closes the motion of one period."""
+    scene, law = curve.scenes.scene, curve.law
+    vectorial = scene.degrees_of_freedom < 2 or law.planar_form() == "vectorial"
+    return curve.method.method.resolves_events and vectorial and not is_convergent(scene, law)
+
+
+def _onsets_of_multipliers(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
+    from frictionlab.curves.multipliers import MOST_CLOSED, StabilityRow, multiplier_onsets
+
+    speeds = curve.scenes.belt_speeds
+    period, modulus = (rows[name].to_numpy(dtype=float) for name in OF_MULTIPLIERS[1:])
+    ok = (rows["status"] == "ok").to_numpy()
+    attracts = ok & (period == curve.scenes.scene.periods) & ~(modulus >= 1.0)
+    # where motions end on an orbit of several periods, or never repeat, that of one period does not attract
+    answered = (ok | (rows["status"] == "not_unique").to_numpy() | (modulus >= 1.0)) & (speeds > 0.0)
+    known = {
+        float(speeds[i]): StabilityRow(float(speeds[i]), bool(attracts[i])) for i in np.flatnonzero(answered)
+    }
+    changes = sum(one.attracts != other.attracts for one, other in pairwise(known[v] for v in sorted(known)))
+    if not changes or most < MOST_CLOSED * changes:
+        return []
+    return multiplier_onsets(
+        curve.scenes.scene, curve.law, tolerance, [known[speed] for speed in sorted(known)]
+    )
+
+
+def _solved(curve: StudyCurve, tolerance: float, scenes: Scenes) -> list[tuple[Answers, int]]:
+    """The answers of every scene."""
+    pieces = answer(Chunk(np.arange(len(scenes)), scenes, curve.law, curve.method.method, Task(tolerance)))
+    places = {place: (each.answers, i) for each in pieces for i, place in enumerate(each.places)}
+    return [places[i] for i in range(len(scenes))]
+
+
+def _frame(
+    found: list[Onset], heads: list[int], keys: list[str], table: pd.DataFrame | None = None
+) -> pd.DataFrame:
+    columns = zip(*found, strict=True) if found else [[] for _ in ONSETS]
+    own = pd.DataFrame(dict(zip(ONSETS, columns, strict=True)))
+    if table is None or not found:
+        return pd.DataFrame(columns=[*keys, *ONSETS])
+    return pd.concat([table.loc[:, keys].iloc[heads].reset_index(drop=True), own], axis=1)
+
+
+def attractor_table(curves: Sequence[StudyCurve], tolerance: float, starts: int) -> pd.DataFrame:
+    """Of all curves whose method follows motions to wherever they end, by so many starts at each belt speed."""
+    given = inputs(curves)
+    keys = curve_inputs(given.columns)
+    rows = [row for curve in curves for row in _rows(curve, given, keys, tolerance, starts)]
+    in_si = [ALSO_IN_SI[name][0] for name in ATTRACTORS if name in ALSO_IN_SI and given.scales is not None]
+    return pd.DataFrame(rows, columns=[*keys, *ATTRACTORS, *in_si])
+
+
+def states_table(given: Inputs, states: KeptRows) -> pd.DataFrame:
+    """Of points that have several states a row each; states: by row of the result table."""
+    keys = curve_inputs(given.columns)
+    frames = []
+    for row, columns in sorted(states.items()):
+        head = {name: given.columns[name][row] for name in keys}
+        numbers = np.arange(1, 1 + len(columns["period"]))
+        kinds = map(_error_kind, columns["error"].tolist(), columns["period"].tolist())
+        own = {
+            "belt_speed": given.columns[BELT_SPEED][row],
+            "state": numbers,
+            "error_kind": [*kinds],
+            **columns,
+        }
+        own["period"] = columns["period"].astype(int)
+        beside = beside_in_si(own, scales_of_row(given, row))
+        frames.append(pd.DataFrame(head | {name: own[name] for name in OF_STATES} | beside))
+    return pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=[*keys, *OF_STATES])
+
+
+def _error_kind(error: float, period: float) -> str:
+    if math.isnan(error):
+        return ""
+    return "estimated" if period else STATISTICAL
+
+
+def _rows(
+    curve: StudyCurve, given: Inputs, keys: Sequence[str], tolerance: float, starts: int
+) -> Iterator[dict[str, Any]]:
+    head = {name: given.columns[name][curve.rows[0]] for name in keys}
+    units = scales_of_row(given, curve.rows[0])
+    speeds, places = np.unique(curve.scenes.belt_speeds, return_index=True)
+    scenes, law, method = curve.scenes.taken(places), curve.law, curve.method.method
+    if method.refusal(scenes[0], law) is not None:
+        return
+    numbers = dict.fromkeys(range(len(speeds)), 0)
+    for state in method.states(scenes, law, tolerance, starts):
+        numbers[state.place] += 1
+        for point in range(len(state.x)):
+            own = _row(state, point, float(speeds[state.place]), numbers[state.place])
+            yield head | own | beside_in_si(own, units)
+
+
+def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, Any]:
+    return {
+        "belt_speed": speed,
+        "state": number,
+        "error_kind": _error_kind(state.error, state.period),
+        **{name: getattr(state, field) for name, field in STATE_NUMBERS.items()},
+        "point": point + 1,
+        "x": float(state.x[point]),
+        "velocity": float(state.velocity[point]),
+        "found_from": state.found_from,
+    }
+
+
+def harmonic_table(given: Inputs, harmonics: KeptRows) -> pd.DataFrame:
+    """The inputs that are equal along a curve, the belt speed, then ``HARMONICS``; in the order of the result table.
+
+    Columns across the belt are left out where no orbit has them.
+    """
+    keys = curve_inputs(given.columns)
+    frames = [_harmonic_rows(given, keys, row, columns) for row, columns in sorted(harmonics.items())]
+    if not frames:
+        return pd.DataFrame(columns=[*keys, *HARMONICS])
+    return pd.concat(frames, ignore_index=True)
+
+
+def _harmonic_rows(given: Inputs, keys: list[str], row: int, columns: dict[str, Floats]) -> pd.DataFrame:
+    head = {name: given.columns[name][row] for name in keys}
+    own = {
+        "belt_speed": given.columns[BELT_SPEED][row],
+        **columns,
+        "harmonic": columns["harmonic"].astype(int),
+    }
+    return pd.DataFrame(head | own | beside_in_si(own, scales_of_row(given, row)))

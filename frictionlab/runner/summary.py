@@ -1,0 +1,187 @@
+"""A run in a few lines of text: one per curve, then what was expected, then where the table is."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictionlab.runner.expectations import Verdict
+from frictionlab.runner.run import Run
+from frictionlab.runner.table import swept_inputs, whole
+from frictionlab.runner.words import counted, in_words
+from frictionlab.scene.as_written import without_unit
+from frictionlab.values.columns import SHOWN_IN, belt_speed
+from frictionlab.values.printable import PLUS_MINUS, with_error
+from frictionlab.values.units import in_shown_units
+
+RowArrays = Mapping[str, np.ndarray]
+"""Columns of some rows of a table."""
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
+
+
+def pattern(sentence: Any) -> str:
+    """A sentence without its numbers; nothing for what is no sentence."""
+    return _NUMBER.sub("#", sentence) if isinstance(sentence, str) else ""
+
+
+def each_once(column: pd.Series, told: Callable[[Any], str]) -> pd.Series:
+    """What is told of every cell, found once for each different one."""
+    places, different = pd.factorize(column, use_na_sentinel=False)
+    return pd.Series(np.array([told(each) for each in different], dtype=object)[places], column.index)
+
+
+def alike(sentences: Iterable[str]) -> str:
+    """Sentences that differ in their numbers at most as one: the least and the greatest of each number."""
+    first, *others = dict.fromkeys(sentences)
+    values = zip(*(_NUMBER.findall(each) for each in (first, *others)), strict=False)
+    ends = iter([" ... ".join(dict.fromkeys((min(one, key=float), max(one, key=float)))) for one in values])
+    return _NUMBER.sub(lambda found: next(ends, found[0]), first)
+
+
+MOST_REASONS = 10
+WORDS_OF_MODELS = "words of models in full: frictionlab columns"
+CURVES_TOLD = 20
+"""Curves of a run that are told line by line."""
+
+
+def summary(run: Run) -> str:
+    """What a run found, for reading: curves, reasons, verdicts."""
+    table = in_shown_units(whole(run.to_show), run.study.units)
+    told = ", ".join(f"{count} {status}" for status, count in run.counts.items())
+    parts = [
+        [run.study.title] if run.study.title else [],
+        [f"{counted(run.size, 'point')}: {told}"],
+        [f"of {counted(len(table), 'point')} spread over them:"] if run.shown is not None else [],
+        ["", *_curve_lines(table)],
+        _model_lines(table),
+        _reasons(table),
+        verdict_lines(run.verdicts),
+        [f"table in {run.table_file}"] if run.table_file else [],
+    ]
+    return "\n".join(line for part in parts for line in part)
+
+
+_HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "model")
+
+
+def _curve_lines(table: pd.DataFrame) -> list[str]:
+    """One line per curve: everything equal but belt speed; of many the first ones."""
+    keys = ["law", "method", *swept_inputs(table)]
+    groups = table.groupby(keys, sort=False, dropna=False)
+    models = _models(table)
+    read = {name: table[name].to_numpy() for name in ("mean_friction", "error", "status", "model")}
+    found = sorted(groups.indices.items(), key=lambda one: int(one[1].min()))
+    lines = [
+        _curve_line(dict(zip(keys, key, strict=True)), {name: read[name][at] for name in read}, models)
+        for key, at in found[:CURVES_TOLD]
+    ]
+    left = len(found) - len(lines)
+    return [*columns([_HEAD, *lines]), *([f"... and {counted(left, 'more curve')}"] if left else [])]
+
+
+def _models(table: pd.DataFrame) -> dict[str, int]:
+    """A number for each model, whose sentence is too long for a line per curve; equal models share a number."""
+    found = table["model"].dropna().unique()
+    numbers = {form: number for number, form in enumerate(dict.fromkeys(map(pattern, found)), 1)}
+    return {model: numbers[pattern(model)] for model in found}
+
+
+def _model_lines(table: pd.DataFrame) -> list[str]:
+    models = _models(table)
+    groups = {number: [model for model in models if models[model] == number] for number in models.values()}
+    told = [f"model {number}: {alike(group)}" for number, group in groups.items()]
+    return [*told, WORDS_OF_MODELS] if told else []
+
+
+def _curve_line(inputs: dict[str, Any], rows: RowArrays, models: dict[str, int]) -> tuple[str, ...]:
+    law, method = str(inputs.pop("law")), str(inputs.pop("method"))
+    where = ", ".join(_setting(name, x) for name, x in inputs.items() if x == x)
+    errors = rows["error"][~np.isnan(rows["error"])]
+    error = f"{errors.max():.1e}" if len(errors) else ""
+    used = ", ".join(
+        dict.fromkeys(str(models[each]) for each in dict.fromkeys(rows["model"]) if each in models)
+    )
+    return law, method, where, statuses(rows), mean_span(rows, " ... ", " +- "), error, used
+
+
+def mean_span(
+    rows: RowArrays | pd.DataFrame,
+    to: str = " \N{HORIZONTAL ELLIPSIS} ",
+    between: str = PLUS_MINUS,
+    unit: str = "",
+) -> str:
+    """The least and the greatest mean friction of rows, each with its error; '' where none has a number.
+
+    unit: the end of the columns' names, ``_N`` for a force.
+    """
+    means, errors = (np.asarray(rows[f"{name}{unit}"], dtype=float) for name in ("mean_friction", "error"))
+    if np.isnan(means).all():
+        return ""
+    ends = int(np.nanargmin(means)), int(np.nanargmax(means))
+    told = [with_error(float(means[end]), float(errors[end]), between=between) for end in ends]
+    return to.join(dict.fromkeys(told))
+
+
+def _setting(name: str, value: Any) -> str:
+    """An input with its value, without what all inputs of a scene begin with."""
+    brief, _, unit = name.removeprefix("scene.").removeprefix("dimensional.").partition(SHOWN_IN)
+    return f"{without_unit(brief)} {in_words(value)} {unit}" if unit else f"{brief} {in_words(value)}"
+
+
+def statuses(rows: RowArrays | pd.DataFrame) -> str:
+    """How many rows have each status, in words."""
+    return ", ".join(f"{count} {status}" for status, count in Counter(rows["status"]).most_common())
+
+
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of words as lines with aligned columns; columns without a word below their head are left out."""
+    kept = [column for column in zip(*rows, strict=True) if any(column[1:]) or len(rows) == 1]
+    padded = [[cell.ljust(max(map(len, column))) for cell in column] for column in kept]
+    return ["  ".join(line).rstrip() for line in zip(*padded, strict=True)]
+
+
+def _reasons(table: pd.DataFrame) -> list[str]:
+    """Why points that are not ok are not: law by law those whose reasons begin alike, most points first."""
+    rest, by_methods = table[table["status"] != "ok"], table["method"].nunique() > 1
+    whose = rest["law"] + (" by " + rest["method"] if by_methods else "")
+    begins = each_once(rest["reason"], lambda reason: pattern(reason).partition(":")[0])
+    groups = [rows for _, rows in rest.groupby([whose, rest["status"], begins], sort=False)]
+    lines = [
+        f"{whose[rows.index[0]]}, {len(rows)} {rows['status'].iloc[0]} at {_speeds(rows)}: {_first(rows['reason'])}"
+        for rows in sorted(groups, key=len, reverse=True)
+    ]
+    more = [f"... and {len(lines) - MOST_REASONS} more reasons"] if len(lines) > MOST_REASONS else []
+    return ["", *lines[:MOST_REASONS], *more] if lines else []
+
+
+def _speeds(rows: pd.DataFrame) -> str:
+    """The belt speeds of rows."""
+    name = belt_speed(rows)
+    _, _, unit = name.partition(SHOWN_IN)
+    ends = dict.fromkeys(f"{end:.4g}" for end in (rows[name].min(), rows[name].max()))
+    return f"belt speed{'s' if len(ends) > 1 else ''} {' ... '.join(ends)} {unit}".rstrip()
+
+
+def _first(reasons: pd.Series) -> str:
+    """The commonest of reasons that begin alike, and how many others there are."""
+    counts = reasons.value_counts()
+    others = f" ({counted(len(counts) - 1, 'other')} in the table)" if len(counts) > 1 else ""
+    return f"{next(iter(counts.index), '')}{others}"
+
+
+def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """How many expectations held, and each that did not in full."""
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    counts = {"passed": len(verdicts) - len(failed), "FAILED": len(failed)}
+    told = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
+    return [f"expect: {told}", *failed_lines(failed)] if verdicts else []
+
+
+def failed_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """A line for each expectation that did not hold."""
+    return [f"expect FAILED: {verdict.sentence}" for verdict in verdicts if not verdict.passed]

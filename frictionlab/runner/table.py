@@ -1,0 +1,316 @@
+"""The one tidy table of a run: inputs first, then what was found, one row per scene, law and method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.runner.part import KeptRows, Part, beside_in_si, si_columns, si_scales
+from frictionlab.runner.words import column_in_si_words
+from frictionlab.scene.units import scaled_parameters
+from frictionlab.study.grid import StudyCurve
+from frictionlab.values.columns import (
+    ALWAYS,
+    BELT_SPEEDS,
+    RESULTS,
+    SCALED,
+    SHOWN_IN_PART,
+    SI,
+    TEXT,
+    belt_speed,
+    given,
+    leading,
+)
+from frictionlab.values.quantities import Floats
+
+FINISHED = ("ok", "refused", "failed", "not_unique")
+
+
+class Inputs(NamedTuple):
+    """The input columns of each row; scales: the units of its results, for scenes in SI units."""
+
+    columns: dict[str, ColumnValues]
+    size: int
+    scales: dict[str, Floats] | None = None
+
+
+def inputs(curves: Sequence[StudyCurve]) -> Inputs:
+    """law, kind, method, then every value of the scenes and of the laws; empty (NaN, None) where a row has none."""
+    return InputColumns(curves).of(range(len(curves)))
+
+
+class InputColumns:
+    """The input columns of a study's curves: of all rows or of some at a time, each time the same columns."""
+
+    def __init__(self, curves: Sequence[StudyCurve]) -> None:
+        self._curves = curves
+        named = [{"law": each.law_label, "kind": each.kind, "method": each.method.label} for each in curves]
+        # Curves share their scenes and laws: the values of each are read once.
+        scenes = _once(curves, lambda each: each.scenes.scene, lambda scene: scene.values())
+        laws = _once(curves, lambda each: each.given_law, _values)
+        scaled = [_scaled(each) for each in curves]
+        self._records = [("", named), ("scene.", scenes), ("law.", laws), (SCALED, scaled)]
+        self._kinds = [_kinds(records) for _, records in self._records]
+
+    def of(self, chosen: range) -> Inputs:
+        """Of the curves at these places, whose rows are all rows from the first of them to the last."""
+        curves = self._curves[chosen.start : chosen.stop]
+        first = min(each.rows.start for each in curves)
+        where = [slice_of(each.rows, first) for each in curves]
+        size = sum(len(each.rows) for each in curves)
+        columns: dict[str, ColumnValues] = {}
+        for (prefix, records), kinds in zip(self._records, self._kinds, strict=True):
+            columns |= _spread(prefix, records[chosen.start : chosen.stop], kinds, where, size)
+        for each, places in zip(curves, where, strict=True):
+            for name, speeds in zip(BELT_SPEEDS, (each.scenes.belt_speeds, each.scenes.given), strict=True):
+                if name in columns:
+                    columns[name][places] = speeds
+        return Inputs(columns, size, _scales(curves, where, size))
+
+
+ColumnValues = NDArray[Any]
+Told = TypeVar("Told")
+
+
+def _once(
+    curves: Sequence[StudyCurve], part: Callable[[StudyCurve], Any], told: Callable[[Any], Told]
+) -> list[Told]:
+    """What is told of a part of each curve, made once of each different one."""
+    found = {id(part(each)): part(each) for each in curves}
+    made = {key: told(one) for key, one in found.items()}
+    return [made[id(part(each))] for each in curves]
+
+
+def slice_of(rows: range, first: int = 0) -> slice:
+    """Their places in an array that begins with the row ``first``."""
+    return slice(rows.start - first, rows.stop - first, rows.step)
+
+
+def _scaled(curve: StudyCurve) -> dict[str, Any]:
+    """The parameters of its law that were given in SI units in the scales of the scene."""
+    si = curve.scenes.scene.dimensional
+    return {} if si is None else _cells(scaled_parameters(curve.given_law, si.scales))
+
+
+def _scales(curves: Sequence[StudyCurve], where: list[slice], size: int) -> dict[str, Floats] | None:
+    if not curves or curves[0].scenes.scene.dimensional is None:
+        return None
+    found = _once(curves, lambda each: each.scenes.scene, si_scales)
+    return _spread("", found, _kinds(found), where, size)
+
+
+def _values(law: FrictionLaw) -> dict[str, Any]:
+    return _cells(law.model_dump(exclude_none=True, mode="json"))
+
+
+def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values in cells: several numbers go to separate cells, ``mu[0]``, ``mu[1]``."""
+    cells: dict[str, Any] = {}
+    for name, value in values.items():
+        several = (
+            {f"{name}[{k}]": each for k, each in enumerate(value)} if isinstance(value, list | tuple) else {}
+        )
+        cells |= several or {name: value}
+    return cells
+
+
+def _kinds(records: list[dict[str, Any]]) -> dict[str, bool]:
+    """The names in records, and whether all their values are numbers."""
+    found: dict[str, bool] = {}
+    for record in {id(record): record for record in records}.values():
+        for name, value in record.items():
+            found[name] = found.get(name, True) and isinstance(value, float | int)
+    return found
+
+
+def _spread(
+    prefix: str, records: list[dict[str, Any]], kinds: dict[str, bool], where: list[slice], size: int
+) -> dict[str, ColumnValues]:
+    """A column for each name, each record's value at its places; numbers with gaps as floats."""
+    found: dict[str, ColumnValues] = {}
+    for name, are_numbers in kinds.items():
+        column = np.full(size, np.nan) if are_numbers else np.full(size, None, dtype=object)
+        for record, places in zip(records, where, strict=True):
+            if name in record:
+                column[places] = record[name]
+        found[f"{prefix}{name}"] = column
+    return found
+
+
+def value_in(cells: Mapping[str, Any], name: str) -> Any:
+    """The value of this name, one or several, of a row's cells; None where they are empty."""
+    given = {key: cells[key] for key in cells if key == name or key.startswith(f"{name}[")}
+    filled = {key: value for key, value in given.items() if value is not None and value == value}
+    return filled[name] if name in filled else [*filled.values()] or None
+
+
+EVERY_ROW = slice(None)
+
+
+class Results:
+    """The result columns of a run, filled as its parts come in; what has not come in is ``killed``."""
+
+    def __init__(self, size: int, columns: frozenset[str], rest: str = "not finished") -> None:
+        """rest: why what does not come in is missing."""
+        self._columns = columns
+        self._words = {name: np.full(size, "", dtype=object) for name in TEXT}
+        self._words["status"][:] = "killed"
+        self._words["reason"][:] = rest
+        names = [name for name in RESULTS if name not in TEXT and name in columns]
+        self._numbers: dict[str, Floats] = {name: np.full(size, np.nan) for name in names}
+
+    def put(self, part: Part, first: int = 0) -> None:
+        """Fill the rows of a part, the first here being this one. Raises KeyError for a column not asked for."""
+        rows = part.rows - first
+        for name, words in part.text.items():
+            self._words[name][rows] = words
+        for name, numbers in part.numbers.items():
+            self._numbers[name][rows] = numbers
+
+    def frame(
+        self, given: Inputs, rows: slice = EVERY_ROW, names: Collection[str] | None = None
+    ) -> pd.DataFrame:
+        """The table: contract order, empty cells where a column does not apply.
+
+        rows, names: of these rows alone, of the results these columns alone.
+        """
+        told = [name for name in RESULTS if name in self._columns and (names is None or name in names)]
+        found = {name: self._words.get(name, self._numbers.get(name)) for name in told}
+        in_si = si_columns(self._numbers, given.scales) if given.scales is not None and names is None else {}
+        columns = given.columns | found | in_si
+        shown = {name: column[rows] for name, column in columns.items() if column is not None}
+        if given.scales is not None:
+            scales = {name: values[rows] for name, values in given.scales.items()}
+            if "reason" in shown and names is None:
+                shown["reason"] = np.array(column_in_si_words(shown["reason"], scales), dtype=object)
+        frame = pd.DataFrame(shown, copy=False)
+        for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
+            if name in given.columns and frame[name].isna().all():
+                continue  # words of other rows
+            frame[name] = _column_of_words_or_numbers(frame[name])
+        return frame
+
+
+def without_empty(table: pd.DataFrame) -> pd.DataFrame:
+    """The table without the result columns that no row has."""
+    return table.drop(columns=[n for n in table.columns if may_be_left_out(n) and table[n].isna().all()])
+
+
+def may_be_left_out(name: str) -> bool:
+    """Whether a column is left out where no row has it: a result that not every table has."""
+    return (name in RESULTS or name in SI) and name not in ALWAYS
+
+
+def whole(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with every result column, empty where it was not asked for."""
+    if all(name in table for name in RESULTS):
+        return table
+    given = [name for name in table.columns if name not in RESULTS and name not in SI]
+    names = [*given, *RESULTS, *(name for name in SI if name in table)]
+    columns = {name: table[name] if name in table else _nothing(name, table.index) for name in names}
+    found = pd.DataFrame(columns, copy=False)
+    found.attrs = table.attrs
+    return found
+
+
+def _nothing(name: str, index: pd.Index) -> pd.Series:
+    return pd.Series(np.nan, index, _WORDS if name in TEXT else float)
+
+
+_WORDS = pd.StringDtype(na_value=np.nan)
+
+
+def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
+    """Numbers with gaps as floats; words as strings, the empty word as a gap."""
+    if all(value is None or isinstance(value, float | int) for value in column):
+        return column.astype(float)
+    return column.where(column != "", None).astype(_WORDS)
+
+
+def status_counts(table: pd.DataFrame) -> dict[str, int]:
+    """How many rows have each status, the most frequent first."""
+    return {str(name): int(count) for name, count in table["status"].value_counts().items()}
+
+
+def swept_inputs(table: pd.DataFrame) -> list[str]:
+    """Inputs besides belt speed that take several values within one law; its label distinguishes laws.
+
+    Of those that change together, the first; belt speed may be one of them.
+    """
+    speed = belt_speed(table.columns)
+    names = [speed, *(name for name in given(table.columns) if name != speed)]
+    names = [name for name in names if name in table]
+    within = table.groupby("law", sort=False)[names].nunique(dropna=False).max()
+    swept = [name for name in names if within[name] > 1]
+    apart = swept if SHOWN_IN_PART in table.attrs else leading(swept, table)
+    return [name for name in apart if name != speed]
+
+
+def finished_part(
+    given: Inputs, earlier: pd.DataFrame, wanted: Collection[str], orbits: KeptRows | None = None
+) -> Part:
+    """The rows of this run that an earlier table has finished, with these columns and their orbits."""
+    done = earlier[earlier["status"].isin(FINISHED)]
+    done = done[done["status"] != "not_unique"]  # the table does not tell their states
+    names = list(given.columns)
+    places = {key: place for place, key in enumerate(_keys(done[name].tolist() for name in names))}
+    keys = _keys(given.columns[name].tolist() for name in names)
+    found = {row: places[key] for row, key in enumerate(keys) if key in places}
+    table = done.iloc[list(found.values())]
+    text = {name: table[name].fillna("").tolist() for name in TEXT if name in wanted}
+    numbers = {name: table[name].to_numpy(float) for name in RESULTS if name in wanted and name not in TEXT}
+    pairs = zip(found, table.index.tolist(), strict=True)
+    kept = {row: orbits[there] for row, there in pairs if there in orbits} if orbits else {}
+    return Part(np.array([*found], dtype=np.int64), text, numbers, {"orbits": kept})
+
+
+def _keys(columns: Iterable[list[Any]]) -> Iterable[Hashable]:
+    """The cells of each row, None for NaN."""
+    return zip(*([None if value != value else value for value in column] for column in columns), strict=True)
+
+
+def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """One plain record per row for JSON, None for an empty cell."""
+    columns = {name: [_plain(value) for value in frame[name].tolist()] for name in frame.columns}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def _plain(value: Any) -> Any:
+    """The value for JSON, which has neither NaN nor infinity."""
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def orbit_rows(
+    orbits: KeptRows, memories: Sequence[str] = (), given: Inputs | None = None, first: int = 0
+) -> pd.DataFrame | None:
+    """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any.
+
+    memories: columns of memory to be there whether or not one of these laws remembers so much; NaN where none does.
+    given: of the table from its row ``first`` on; scenes given in SI units have columns in them.
+    """
+    frames = [
+        pd.DataFrame({"row": row, **samples, **beside_in_si(samples, scales_of_row(given, row - first))})
+        for row, samples in sorted(orbits.items())
+    ]
+    if not frames:
+        return None
+    rows = pd.concat(frames, ignore_index=True)
+    return rows.reindex(columns=list(dict.fromkeys([*rows.columns, *memories])))
+
+
+def scales_of_row(given: Inputs | None, row: int) -> dict[str, float]:
+    """The units in which results of a row are counted in SI units; none where its scene is not given in them."""
+    found = {} if given is None or given.scales is None else given.scales
+    return {name: float(scales[row]) for name, scales in found.items()}
+
+
+def kept_rows(orbits: pd.DataFrame) -> KeptRows:
+    """What ``orbit_rows`` made a table of."""
+    columns = [name for name in orbits if name != "row"]
+    groups = orbits.groupby("row", sort=True)
+    return {int(row): {name: own[name].to_numpy() for name in columns} for row, own in groups}

@@ -1,1 +1,0 @@
-"""New studies and laws, written from templates."""

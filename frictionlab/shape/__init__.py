@@ -1,1 +1,0 @@
-"""The shape of a curve of mean friction: where it ends, how it bends."""

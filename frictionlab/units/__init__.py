@@ -1,1 +1,0 @@
-"""Numbers with units: texts such as 2 mm/s as numbers in SI units, and numbers as they are shown."""

@@ -215,6 +215,13 @@ class FrictionLaw(Labelled, ABC):
         """
         return self.planar_form() != "rotated"
 
+    def obeys(self, check: str) -> bool:
+        """Tell whether the law claims to pass a check of the battery: ``expected_failures`` does not name it.
+
+        A shortcut that rests on a property of laws asks for the check of that property: ``law.obeys("oddness")``.
+        """
+        return check not in self.expected_failures
+
     def constant_sliding_friction(self) -> bool:
         """Whether ``sliding_friction`` is the same number at every speed."""
         return False

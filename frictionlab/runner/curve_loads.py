@@ -30,6 +30,7 @@ LOPSIDED = (
     "loads, belt, normal load or springs are not mirrored half a period later: the limit of friction at vanishing "
     "belt speed is not known"
 )
+ONE_SIDED = "friction is not the same to both sides: its limit at vanishing belt speed is not known"
 JUMPS = (
     "friction jumps at the end of reversal, where slip rests for a part of the period: it has no shape there"
 )
@@ -85,7 +86,7 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
 def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
     """Whether a curve of this scene has a known mean friction at vanishing belt speed."""
     varied = scene.belt_vibration is not None or scene.normal_load_variation is not None
-    if not scene.is_harmonic or varied or scene.body_terms:
+    if not scene.is_harmonic or varied or scene.body_terms or not law.obeys("oddness"):
         return not _start(scene, law)[1]
     holds = law.memory_kind == "none" and scene.degrees_of_freedom > 0 and can_hold(scene, law)
     return not holds or (scene.load_along_belt_only and law.monotone())
@@ -97,6 +98,8 @@ def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
     prescribed = scene.degrees_of_freedom == 0
     if prescribed and not remembers and _rests_at_its_largest(scene):
         return math.nan, JUMPS
+    if law is not None and not law.obeys("oddness"):
+        return math.nan, ONE_SIDED
     if not repeats_mirrored(scene):
         along = prescribed and scene.load_along_belt_only
         if along and law is not None and not remembers and law.constant_sliding_friction():

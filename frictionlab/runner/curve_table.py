@@ -23,7 +23,7 @@ from frictionlab.curves.ends import (
 from frictionlab.curves.verdict import Estimate, FrictionCurve, Shape, UnreadableCurve, reduction, shape_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.runner.curve_loads import loads_of, varies
+from frictionlab.runner.curve_loads import ONE_SIDED, loads_of, varies
 from frictionlab.runner.pairs import OWN_ERROR_OF_MODELS
 from frictionlab.runner.part import beside_in_si
 from frictionlab.runner.table import value_in
@@ -140,6 +140,8 @@ def loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
 def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:
     """Why the limit of friction at vanishing belt speed is not known; '' where it is."""
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    if law is not None and "oddness" in law.expected_failures:
+        return ONE_SIDED
     if law is None or law.memory_kind != "deflections":
         return ""
     return "the body may stick elastically to a slow belt: the start of the curve is known for one deflection only"

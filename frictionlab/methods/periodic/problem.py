@@ -68,7 +68,7 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
         signals = scene.signals()
         load, belt = (_largest(each[0], signals.period) for each in (signals.load, signals.belt))
         swing = (4.0 / math.pi * load / mass.damping if mass.damping > 0.0 else math.inf) + belt
-    return law.damps_across(abs(scene.belt_speed) + swing)
+    return law.obeys("reflection") and law.damps_across(abs(scene.belt_speed) + swing)
 
 
 def _largest(signal: Signal, period: float) -> float:

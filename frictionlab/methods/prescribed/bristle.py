@@ -142,7 +142,7 @@ class BristlePoint:
             self.reason, self.error_kind = closed.reason, ""
             return PrescribedMean(low=closed.low, high=closed.high)
         self.model = closed.model
-        if self.belt_speed == 0.0:
+        if self.belt_speed == 0.0 and self.law.obeys("oddness"):
             self.model, self.error_kind = ModelWord.SYMMETRY, "guaranteed"
             return PrescribedMean(0j, ROUNDING * closed.loop.largest)
         if closed.model == ModelWord.SLIP_ONE_WAY and self.law.constant_sliding_friction():

@@ -146,6 +146,8 @@ def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
         return suggest_shooting(
             f"{name} follows bristle friction along one line: this scene has two directions", scene, law
         )
+    if not law.obeys("oddness"):
+        return f"{name} needs bristles that are alike to both sides: this law is not odd; use shooting"
     if not math.isfinite(law.under_load(scene.mass().normal_load).largest_deflection()):
         return f"{name} needs a law with a largest deflection; use shooting"
     if not math.isfinite(friction_free_velocity(scene)):

@@ -108,8 +108,9 @@ def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Modelled) -> tup
     if not asked:
         return error, reasons
     speeds = belt_speeds_of(scenes)[asked]
-    # Half periods of sines mirror each other: a belt that runs the other way has minus the mean.
-    sides = np.copysign(1.0, speeds) if scenes[0].is_harmonic else np.ones(len(asked))
+    # Half periods of sines mirror each other: a belt that runs the other way has minus the mean under an odd law.
+    mirrored = scenes[0].is_harmonic and law.obeys("oddness")
+    sides = np.copysign(1.0, speeds) if mirrored else np.ones(len(asked))
     speeds, back = np.unique(sides * speeds, return_inverse=True)
     full = full_means(scenes[0], law.under_load(scenes[0].mass().normal_load), speeds)
     rounding = ROUNDING * np.array([law.sliding_friction(speed) for speed in np.abs(speeds).tolist()])

@@ -130,7 +130,7 @@ def _averaged(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         return Orbit(tau, mean_position(scenes[i], complex(means[i])) + x, v, friction, None)
 
     sines = scenes[0].is_harmonic
-    settled = belt_speeds_of(scenes) == 0.0 if sines else None
+    settled = belt_speeds_of(scenes) == 0.0 if sines and law.obeys("oddness") else None
     return Modelled(
         means, reasons, ModelWord.MDSM_PLANE if sines else ModelWord.MDSM_WAVES, orbit, error, settled=settled
     )

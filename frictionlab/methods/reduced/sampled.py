@@ -116,7 +116,7 @@ def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modell
     speeds, line = belt_speeds_of(scenes), scenes[0].load_along_belt_only
     motions = _motions(Equations.of(scenes[0], law, harmonics), speeds)
     means = np.array([complex(np.nan, np.nan) if each is None else -complex(*each.mean) for each in motions])
-    # On a belt at rest it vanishes by symmetry.
+    # On a belt at rest it vanishes by symmetry: friction along the slip, of its speed alone, is odd.
     means = np.where((speeds == 0.0) & np.isfinite(means), 0j, means)
     reasons = ["" if each else NOT_SETTLED.format(harmonics) for each in motions]
 

@@ -151,7 +151,7 @@ def _rest(case: Case, way: Way, end: float, room: Workspace, track: Track) -> Wa
     tau, until = place.tau, end_of_rest(case, place.tau, place.x, end)
     lasts = until - tau
     if track.stick.size > 0 and lasts > 0.0:
-        note_stick(track, tau, lasts, True, anchored(case.law, body, belt_speed, 1.0, tau), tau, place.x)
+        note_stick(track, anchored(case.law, body, belt_speed, 1.0, tau), tau, lasts, place.x)
     room.times[RESTED] += lasts
     if lasts > room.times[LONGEST]:
         room.times[LONGEST], room.times[MIDDLE] = lasts, tau + 0.5 * lasts

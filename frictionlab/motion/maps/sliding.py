@@ -25,6 +25,7 @@ from frictionlab.motion.equation import (
     normal_load,
     piece_ends,
     pieces_of,
+    quickest_of,
     rates,
     reference_position,
     reference_velocity,
@@ -296,7 +297,7 @@ def _hopping(part: float, problem: Flow, hop: Hop) -> Any:
     return x, v, hop.rub
 
 
-_note_slip, note_stick, note_hop = (
+_note_slip, _note_stick, note_hop = (
     panel_writer(motion_in_slip),
     panel_writer(_resting),
     panel_writer(_hopping),
@@ -304,11 +305,22 @@ _note_slip, note_stick, note_hop = (
 
 
 @inner
+def note_stick(track: Track, problem: Flow, tau: float, lasts: float, x: Any) -> None:
+    """Note a time at rest from x on in panels of an eighth of the quickest period: the loads vary within it."""
+    body, belt_speed = problem.body, problem.belt_speed
+    panels = 1 + int(4.0 / math.pi * quickest_of(body) * lasts)
+    for k in range(panels):
+        start = tau + lasts * k / panels
+        carried = x + belt_path(body, belt_speed, tau, start)
+        _note_stick(track, start, lasts / panels, True, problem, start, carried)
+
+
+@inner
 def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase) -> None:
     """The time at rest from x on, and the short while after it that the balance of momentum closes."""
     slips = tau + rest.stuck
     if rest.stuck > 0.0:
-        note_stick(track, tau, rest.stuck, True, problem, tau, x)
+        note_stick(track, problem, tau, rest.stuck, x)
     if rest.tau > slips:
         lasts = rest.tau - slips
         x = x + belt_path(problem.body, problem.belt_speed, tau, slips)

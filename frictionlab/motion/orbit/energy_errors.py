@@ -53,12 +53,14 @@ def energy_errors(
     viscous = damping * (4.0 * read["misfit_speed"] + 2.0 * wrong * (swing + wrong / period))
     viscous = viscous + _ROUNDING * damping * swing**2 * period
     belt = np.abs(belt_speeds_of(scenes))
-    force = (
-        mass.normal_load * (np.abs(read["mean_friction"] - means.value) + means.error + _ROUNDING) * period
-    )
+    apart = np.abs(read["mean_friction"] - means.value)
+    force = mass.normal_load * (apart + means.error + _ROUNDING) * period
     if scenes[0].degrees_of_freedom:
+        # The balances of the body and of the contact: what they miss, and a mean of the panels that is not the mean.
         missing = np.abs(read["energy_input"] - read["energy_viscous"] - read["energy_friction"])
-        friction = missing + put_in + viscous
+        missing = missing + mass.normal_load * np.fmax(apart - means.error, 0.0) * period * (belt + swing)
+        put_in, viscous = put_in + (missing if load > 0.0 else 0.0), viscous + missing
+        friction = put_in + viscous
     else:  # the motion is given: friction alone can be wrong
         friction = 4.0 * force * swing
     if scenes[0].remembers:  # read as what the load gives less what friction takes

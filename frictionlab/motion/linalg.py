@@ -21,11 +21,11 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension
 
-dimension = by_dimension(lambda like: 1, lambda like: 2)
+dimension = by_dimension(lambda zero: 1, lambda zero: 2)
 
 taken = by_dimension(
-    lambda values, place, like: values[place],
-    lambda values, place, like: complex(values[2 * place], values[2 * place + 1]),
+    lambda values, place, zero: values[place],
+    lambda values, place, zero: complex(values[2 * place], values[2 * place + 1]),
 )
 
 
@@ -40,7 +40,7 @@ def _put_in_the_plane(values: Any, place: int, number: complex) -> None:
 put = by_dimension(_put_on_the_line, _put_in_the_plane)
 
 unit = by_dimension(
-    lambda column, like: 1.0, lambda column, like: complex(1.0, 0.0) if column == 0 else complex(0.0, 1.0)
+    lambda column, zero: 1.0, lambda column, zero: complex(1.0, 0.0) if column == 0 else complex(0.0, 1.0)
 )
 
 
@@ -205,22 +205,22 @@ Block = tuple[complex, complex]
 
 
 block = by_dimension(
-    lambda blocks, place, like: blocks[2 * place],
-    lambda blocks, place, like: (blocks[2 * place], blocks[2 * place + 1]),
+    lambda blocks, place, zero: blocks[2 * place],
+    lambda blocks, place, zero: (blocks[2 * place], blocks[2 * place + 1]),
 )
-"""block(blocks, place, like): the map kept at a place of an array."""
+"""block(blocks, place, zero): the map kept at a place of an array."""
 
 
-def _keep_on_the_line(blocks: Any, place: int, matrix: float, like: float) -> None:
+def _keep_on_the_line(blocks: Any, place: int, matrix: float, zero: float) -> None:
     blocks[2 * place] = matrix
 
 
-def _keep_in_the_plane(blocks: Any, place: int, matrix: Block, like: complex) -> None:
+def _keep_in_the_plane(blocks: Any, place: int, matrix: Block, zero: complex) -> None:
     blocks[2 * place], blocks[2 * place + 1] = matrix
 
 
 keep = by_dimension(_keep_on_the_line, _keep_in_the_plane)
-"""keep(blocks, place, matrix, like): put a map into an array."""
+"""keep(blocks, place, matrix, zero): put a map into an array."""
 
 
 def _applied_in_the_plane(matrix: Block, x: complex) -> complex:
@@ -232,45 +232,45 @@ apply = by_dimension(lambda matrix, x: matrix * x, _applied_in_the_plane)
 """apply(matrix, x): the image of a vector."""
 
 
-def _product_in_the_plane(left: Block, right: Block, like: complex) -> Block:
+def _product_in_the_plane(left: Block, right: Block, zero: complex) -> Block:
     a, b = left
     c, d = right
     return a * c + b * d.conjugate(), a * d + b * c.conjugate()
 
 
-product = by_dimension(lambda left, right, like: left * right, _product_in_the_plane)
-"""product(left, right, like): the map that applies the right one first."""
+product = by_dimension(lambda left, right, zero: left * right, _product_in_the_plane)
+"""product(left, right, zero): the map that applies the right one first."""
 
 add = by_dimension(
-    lambda left, right, like: left + right, lambda left, right, like: (left[0] + right[0], left[1] + right[1])
+    lambda left, right, zero: left + right, lambda left, right, zero: (left[0] + right[0], left[1] + right[1])
 )
-"""add(left, right, like): the sum of two maps."""
+"""add(left, right, zero): the sum of two maps."""
 
 scale = by_dimension(
-    lambda factor, matrix, like: factor * matrix,
-    lambda factor, matrix, like: (factor * matrix[0], factor * matrix[1]),
+    lambda factor, matrix, zero: factor * matrix,
+    lambda factor, matrix, zero: (factor * matrix[0], factor * matrix[1]),
 )
-"""scale(factor, matrix, like): a multiple of a map."""
+"""scale(factor, matrix, zero): a multiple of a map."""
 
 
-def _inverse_in_the_plane(matrix: Block, like: complex) -> Block:
+def _inverse_in_the_plane(matrix: Block, zero: complex) -> Block:
     a, b = matrix
     determinant = a.real * a.real + a.imag * a.imag - b.real * b.real - b.imag * b.imag
     share = 1.0 / determinant
     return share * a.conjugate(), -share * b
 
 
-inverse = by_dimension(lambda matrix, like: 1.0 / matrix, _inverse_in_the_plane)
-"""inverse(matrix, like): not finite where the map is singular."""
+inverse = by_dimension(lambda matrix, zero: 1.0 / matrix, _inverse_in_the_plane)
+"""inverse(matrix, zero): not finite where the map is singular."""
 
 diagonal = by_dimension(
-    lambda mean, split, like: mean + split,
-    lambda mean, split, like: (complex(mean, 0.0), complex(split, 0.0)),
+    lambda mean, split, zero: mean + split,
+    lambda mean, split, zero: (complex(mean, 0.0), complex(split, 0.0)),
 )
-"""diagonal(mean, split, like): x1 times mean + split, x2 times mean - split."""
+"""diagonal(mean, split, zero): x1 times mean + split, x2 times mean - split."""
 
-multiple = by_dimension(lambda x, like: x, lambda x, like: (complex(x.real, x.imag), complex(0.0, 0.0)))
-"""multiple(x, like): the map that multiplies by a number."""
+multiple = by_dimension(lambda x, zero: x, lambda x, zero: (complex(x.real, x.imag), complex(0.0, 0.0)))
+"""multiple(x, zero): the map that multiplies by a number."""
 
 
 def _from_columns_in_the_plane(first: complex, second: complex) -> Block:

@@ -29,8 +29,8 @@ lasting = by_relaxing(lambda body: 0.0, lambda body: body.relaxing.lasting)
 stable_step = by_relaxing(lambda body: 1e300, lambda body: 4.0 / body.relaxing.fastest)
 """stable_step(body): for which DOP853 is stable on the fastest, however little the mass feels it."""
 
-along_x1 = by_dimension(lambda force, like: force, lambda force, like: complex(force, 0.0))
-"""along_x1(force, like): a force along x1, of the kind of like."""
+along_x1 = by_dimension(lambda force, example: force, lambda force, example: complex(force, 0.0))
+"""along_x1(force, example): force along x1, float or complex as the example is."""
 
 
 # --- as rows of a state -------------------------------------------------------------------------------------------

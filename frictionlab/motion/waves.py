@@ -10,16 +10,16 @@ from frictionlab.compile.dispatch import by_dimension
 from frictionlab.scene.varying import PER_WAVE, Course
 
 number_at = by_dimension(
-    lambda table, place, like: table[place],
-    lambda table, place, like: complex(table[place], table[place + 1]),
+    lambda table, place, example: table[place],
+    lambda table, place, example: complex(table[place], table[place + 1]),
 )
-"""number_at(table, place, like): the number there, of the kind of like."""
+"""number_at(table, place, example): number at this place of a table, float or complex as the example is."""
 
 
 @inner
-def _turned(table: Any, place: int, angle: float, like: Any) -> Any:
+def _turned(table: Any, place: int, angle: float, example: Any) -> Any:
     """The wave whose numbers begin at this place, at this angle."""
-    sine, cosine = number_at(table, place + 1, like), number_at(table, place + 3, like)
+    sine, cosine = number_at(table, place + 1, example), number_at(table, place + 3, example)
     return sine * math.sin(angle) + cosine * math.cos(angle)
 
 

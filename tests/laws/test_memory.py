@@ -57,19 +57,19 @@ def test_elements_of_every_number_run_in_a_kernel_of_their_own() -> None:
     assert read_two.entry is not read_three.entry
 
 
-def _of_sliding(law: Any, like: Any) -> float:
+def _of_sliding(law: Any, zero: Any) -> float:
     return 0.0
 
 
-def _of_bristle(law: Any, like: Any) -> float:
+def _of_bristle(law: Any, zero: Any) -> float:
     return 1.0
 
 
-def _of_deflections(law: Any, like: Any) -> float:
+def _of_deflections(law: Any, zero: Any) -> float:
     return 2.0
 
 
-def _of_scalars(law: Any, like: Any) -> float:
+def _of_scalars(law: Any, zero: Any) -> float:
     return 3.0
 
 
@@ -77,13 +77,13 @@ _body = by_law(_of_sliding, _of_bristle, _of_deflections, _of_scalars)
 
 
 @njit
-def which(law: Any, like: Any) -> Any:
+def which(law: Any, zero: Any) -> Any:
     """Which body a kernel takes."""
-    return _body(law, like)
+    return _body(law, zero)
 
 
 def test_kernels_take_the_body_made_for_the_kind_of_deflections() -> None:
     cases = [(Coulomb(mu=0.4), 0j), (THREE, 0.0), (THREE, 0j), (AGEING, 0.0), (AGEING, 0j)]
 
-    assert [compiled(which, law)(like) for law, like in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]
-    assert [which.py_func(law, like) for law, like in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]
+    assert [compiled(which, law)(zero) for law, zero in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]
+    assert [which.py_func(law, zero) for law, zero in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]

@@ -25,9 +25,9 @@ SOFT = fl.LuGre(mu_kinetic=0.3, mu_static=0.5, stiffness=2, damping=0.01, stribe
 
 
 @njit
-def steps(law: Any, body: Any, h: float, many: int, start: Any, like: Any) -> Any:
+def steps(law: Any, body: Any, h: float, many: int, start: Any, zero: Any) -> Any:
     """So many steps from a state, and back into it."""
-    work = workspace(law, like, ())
+    work = workspace(law, zero, ())
     n = count_of(law)
     for k in range(n):
         work.unit[k], work.size[k] = 1.0, 1e-2
@@ -36,8 +36,8 @@ def steps(law: Any, body: Any, h: float, many: int, start: Any, like: Any) -> An
     for turn in range(many):
         tau = START + turn * h
         flow = anchored(law, body, BELT_SPEED, -1.0, tau)
-        linearize(flow, tau, work, like)
-        step(flow, tau, h, work, like)
+        linearize(flow, tau, work, zero)
+        step(flow, tau, h, work, zero)
         for row in range(MEMORY + n):
             work.start[row] = work.end[row]
     for row in range(MEMORY + n):
@@ -45,16 +45,16 @@ def steps(law: Any, body: Any, h: float, many: int, start: Any, like: Any) -> An
 
 
 @njit
-def inside(law: Any, body: Any, h: float, share: float, state: Any, like: Any) -> Any:
+def inside(law: Any, body: Any, h: float, share: float, state: Any, zero: Any) -> Any:
     """The state a share into a step of h, from a state and back into it."""
-    work = workspace(law, like, ())
+    work = workspace(law, zero, ())
     for k in range(count_of(law)):
         work.unit[k], work.size[k] = 1.0, 1e-2
     for row in range(state.size):
         work.start[row] = state[row]
     flow = anchored(law, body, BELT_SPEED, -1.0, START)
-    linearize(flow, START, work, like)
-    step(flow, START, h, work, like)
+    linearize(flow, START, work, zero)
+    step(flow, START, h, work, zero)
     bend(flow, work)
     within_step(flow, share, work)
     for row in range(state.size):
@@ -69,7 +69,7 @@ class System:
         drive = fl.Drive(unbalance=10, frequency=1.5)
         scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=BELT_SPEED, drive=drive)
         mass = scene.model_copy(update={"transverse": across} if planar else {}).mass()
-        self.law, self.planar, self.like = law, planar, 0j if planar else 0.0
+        self.law, self.planar, self.zero = law, planar, 0j if planar else 0.0
         self.body = in_the_plane(mass) if planar else on_the_line(mass)
 
     def start(self) -> Any:
@@ -78,7 +78,7 @@ class System:
 
     def compiled(self, h: float, many: int) -> Any:
         state = self.start()
-        compiled(steps, self.law)(self.body, h, many, state, self.like)
+        compiled(steps, self.law)(self.body, h, many, state, self.zero)
         return state
 
 
@@ -104,7 +104,7 @@ def test_a_step_is_known_to_order_four_between_its_ends(planar: bool, share: flo
     for h in lengths:
         exact = system.compiled(share * h / 64, 64)
         state = system.start()
-        compiled(inside, SOFT)(system.body, h, share, state, system.like)
+        compiled(inside, SOFT)(system.body, h, share, state, system.zero)
         errors.append(np.abs(state - exact).max())
 
     orders = np.diff(np.log(errors)) / np.diff(np.log(lengths))

@@ -273,8 +273,8 @@ def march_laps(
     """From a state lap by lap, until it repeats, stalls, or the laps are used up."""
     # What acts and what is remembered are bare pointers to steppers: the first to an array kept until the end, the
     # others to this function's stack.
-    grid, like = grid_of(body, settings, start.x), start.z[0]
-    memory, ahead = room(law, 1, 2, like), room(law, 1, 2, like)  # and a spring that relaxes
+    grid, item = grid_of(body, settings, start.x), start.z[0]
+    memory, ahead = room(law, 1, 2, item), room(law, 1, 2, item)  # and a spring that relaxes
     problem = MarchProblem(law, body, settings.belt_speed, stepper, items_of(grid), memory, ahead)
     laps, track = laps_of(settings), track_of(settings.room)
     for k in range(start.z.size):

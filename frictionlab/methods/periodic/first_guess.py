@@ -110,9 +110,9 @@ _free_along = by_relaxing(
 
 
 @inner
-def free_inverse(body: BodyNumbers, rubbing: float, inverse: Any, like: Any) -> None:
+def free_inverse(body: BodyNumbers, rubbing: float, inverse: Any, zero: Any) -> None:
     """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
-    n, d = inverse.shape[0], dimension(like)
+    n, d = inverse.shape[0], dimension(zero)
     period = span(body)
     jacobian = np.zeros((n, n))
     for row in range(2 * d, n):

@@ -137,8 +137,8 @@ def _guess(law: Any, body: BodyNumbers, curve: LaneCurve, i: int, z: Any) -> Non
     places = np.empty(2 * BESIDE, np.int64)
     count = _beside(curve.fate, i, places)
     if count == 0:
-        like = body.reference_sine - body.reference_sine
-        free_inverse(body, first_guess(law, body, curve.belt_speeds[i], z), curve.inverses[i], like)
+        zero = body.reference_sine - body.reference_sine
+        free_inverse(body, first_guess(law, body, curve.belt_speeds[i], z), curve.inverses[i], zero)
         return
     _interpolate(curve, places, count, i, z)
     nearest = curve.inverses[places[0]]

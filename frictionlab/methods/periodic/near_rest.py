@@ -85,7 +85,7 @@ class SearchState(NamedTuple):
 @inner
 def _map(case: Case, search: Search, z: Any, residual: Any, origin: float, accuracy: float) -> Image:
     """One period from a state; leaves the rest in the residual and the room."""
-    x, w = unpack(case.body, z, case.like)
+    x, w = unpack(case.body, z, case.zero)
     start = SlipPlace(origin, x, abs(w), math.atan2(w.imag, w.real))
     image = polar_map(case, start, origin + span(case.body), accuracy, search.room, track_of(0))
     pack(case.body, residual, image.x - x, image.w - w)
@@ -226,7 +226,7 @@ def _move_origin(case: Case, search: Search, now: SearchState) -> SearchState:
 def _carried(case: Case, search: Search, now: SearchState) -> SearchState:
     """Rest for all of a period: go on by as many as it surely lasts."""
     body = case.body
-    x, _w = unpack(body, search.z, case.like)
+    x, _w = unpack(body, search.z, case.zero)
     x += belt_path(body, case.belt_speed, now.origin, 2.0 * span(body))
     many = periods_at_rest(case.law, body, case.belt_speed, x - body.reference_cosine)
     return _repeat(case, search, now, many)
@@ -351,7 +351,7 @@ def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None
     if now.error < 0.0:
         now = _search(case, search, goal, _begin(case, search, False))
     stuck = search.room.times[RESTED] / period
-    x, w = unpack(body, search.z, case.like)
+    x, w = unpack(body, search.z, case.zero)
     start = SlipPlace(now.origin, x, abs(w), math.atan2(w.imag, w.real))
     if now.origin > 0.0 and now.error >= 0.0:
         image = polar_map(case, start, period, now.accuracy, search.room, track_of(0))
@@ -365,7 +365,7 @@ def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None
 def _recorded(case: Case, search: Search, state: Any, track: Track) -> Track:
     """The track with the orbit from a state at tau = 0; the room has its derivative."""
     body = case.body
-    y, u = unpack(body, state, case.like)
+    y, u = unpack(body, state, case.zero)
     w = u + reference_velocity(body, 0.0, 1.0) - case.belt_speed
     start = SlipPlace(0.0, y + body.reference_cosine, abs(w), math.atan2(w.imag, w.real))
     first = track.filled[0]

@@ -96,7 +96,7 @@ def _pack_plane(body: BodyNumbers, state: Any, y: complex, u: complex) -> None:
 pack = by_dimension(_pack_line, _pack_plane)
 
 
-def _unpack_plane(body: BodyNumbers, state: Any, like: complex) -> Any:
+def _unpack_plane(body: BodyNumbers, state: Any, zero: complex) -> Any:
     y = complex(
         state[0] / math.sqrt(body.stiffness_mean + body.stiffness_split),
         state[2] / math.sqrt(body.stiffness_mean - body.stiffness_split),
@@ -105,22 +105,22 @@ def _unpack_plane(body: BodyNumbers, state: Any, like: complex) -> Any:
 
 
 unpack = by_dimension(
-    lambda body, state, like: (state[0] / math.sqrt(body.stiffness_mean), state[1]), _unpack_plane
+    lambda body, state, zero: (state[0] / math.sqrt(body.stiffness_mean), state[1]), _unpack_plane
 )
 
 
-def _size_with_memory(law: Any, like: Any) -> int:
-    return 2 * dimension(like) + coordinates(law, like)
+def _size_with_memory(law: Any, zero: Any) -> int:
+    return 2 * dimension(zero) + coordinates(law, zero)
 
 
-size_of = by_law(lambda law, like: 2 * dimension(like), _size_with_memory, _size_with_memory)
-"""size_of(law, like): how many numbers a state is, but for what of the body relaxes."""
+size_of = by_law(lambda law, zero: 2 * dimension(zero), _size_with_memory, _size_with_memory)
+"""size_of(law, zero): how many numbers a state is, but for what of the body relaxes."""
 
 
 @inner
-def whole_size_of(law: Any, body: BodyNumbers, like: Any) -> int:
+def whole_size_of(law: Any, body: BodyNumbers, zero: Any) -> int:
     """With that: its forces are the last numbers of a state."""
-    return size_of(law, like) + elements_of(body)
+    return size_of(law, zero) + elements_of(body)
 
 
 def _pack_forces(body: BodyNumbers, state: Any, rows: Any, first: int) -> None:
@@ -164,14 +164,14 @@ coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
 
 
-def _no_grain(law: Any, body: BodyNumbers, like: Any) -> Any:
+def _no_grain(law: Any, body: BodyNumbers, zero: Any) -> Any:
     return 0.0, 0.0
 
 
-def _grain_of_memory(law: Any, body: BodyNumbers, like: Any) -> Any:
+def _grain_of_memory(law: Any, body: BodyNumbers, zero: Any) -> Any:
     """A yield within a step, or the sum of all steps' errors."""
-    work, most = workspace(law, like, contact_kind(body)), 0.0
-    measure_scales(law, body, work, like)
+    work, most = workspace(law, zero, contact_kind(body)), 0.0
+    measure_scales(law, body, work, zero)
     if law.turning > 0.0:
         for k in range(count_of(law)):
             most = max(most, work.unit[k])
@@ -179,20 +179,20 @@ def _grain_of_memory(law: Any, body: BodyNumbers, like: Any) -> Any:
 
 
 grain_of = by_law(_no_grain, _no_grain, _grain_of_memory)
-"""grain_of(law, body, like): what the steps of a map leave in the mean even if two maps agree, per accuracy over the
+"""grain_of(law, body, zero): what the steps of a map leave in the mean even if two maps agree, per accuracy over the
 normal load: so much always, and so much over the span."""
 
 
-def _smallest_unit(law: Any, body: BodyNumbers, like: Any) -> float:
-    work, least = workspace(law, like, contact_kind(body)), 1e300
-    measure_scales(law, body, work, like)
+def _smallest_unit(law: Any, body: BodyNumbers, zero: Any) -> float:
+    work, least = workspace(law, zero, contact_kind(body)), 1e300
+    measure_scales(law, body, work, zero)
     for k in range(count_of(law)):
         least = min(least, work.unit[k])
     return least
 
 
-unit_of_scalars = by_scalars(lambda law, body, like: 1e300, _smallest_unit)
-"""unit_of_scalars(law, body, like): the smallest by which a coordinate of a scalar is measured; 1e300 for none."""
+unit_of_scalars = by_scalars(lambda law, body, zero: 1e300, _smallest_unit)
+"""unit_of_scalars(law, body, zero): the smallest by which a coordinate of a scalar is measured; 1e300 for none."""
 
 
 # --- the map --------------------------------------------------------------------------------------------------------
@@ -200,7 +200,7 @@ unit_of_scalars = by_scalars(lambda law, body, like: 1e300, _smallest_unit)
 
 def _image_without_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
     """Its steps are not kept."""
-    y, u = unpack(case.body, state, case.like)
+    y, u = unpack(case.body, state, case.zero)
     image = sliding_map(case, y, u, read_forces(case.body, state), how.accuracy, how.track)
     pack(case.body, residual, image.y - y, image.u - u)
     write_forces(case.body, residual, image.forces)
@@ -210,18 +210,18 @@ def _image_without_memory(case: Case, state: Any, residual: Any, how: Stepping) 
 
 
 def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
-    law, body, like = case.law, case.body, case.like
-    y, u = unpack(body, state, like)
-    work = workspace(law, like, contact_kind(body))
-    measure_scales(law, body, work, like)
-    unpack_memory(law, body, work, state, like)
+    law, body, zero = case.law, case.body, case.zero
+    y, u = unpack(body, state, zero)
+    work = workspace(law, zero, contact_kind(body))
+    measure_scales(law, body, work, zero)
+    unpack_memory(law, body, work, state, zero)
     unpack_forces(body, state, work.start, MEMORY + count_of(law))
     cut_back(law, work)
     image = memory_map(case, y, u, work, how)
     pack(body, residual, image.y - y, image.u - u)
-    pack_memory(law, body, work, residual, like)
+    pack_memory(law, body, work, residual, zero)
     pack_forces(body, residual, work.start, MEMORY + count_of(law))
-    for row in range(2 * dimension(like), residual.size):
+    for row in range(2 * dimension(zero), residual.size):
         residual[row] = residual[row] - state[row]
     return image
 
@@ -229,11 +229,11 @@ def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> 
 @inner
 def image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
     """``paced_image`` of a bristle on the line whose deflection the path of the slip tells."""
-    law, body, like = case.law, case.body, case.like
-    y, u = unpack(body, state, like)
-    work = workspace(law, like, contact_kind(body))
-    measure_scales(law, body, work, like)
-    unpack_memory(law, body, work, state, like)
+    law, body, zero = case.law, case.body, case.zero
+    y, u = unpack(body, state, zero)
+    work = workspace(law, zero, contact_kind(body))
+    measure_scales(law, body, work, zero)
+    unpack_memory(law, body, work, state, zero)
     z = work.start[MEMORY]
     image = path_map(case, y, u, z, how)
     pack(body, residual, image.y - y, image.u - u)

@@ -107,27 +107,27 @@ class PeriodicProblem:
         if self.mass.bends and falls_slower_than_dashpots(scene, law):
             check_attraction = resonates_once(scene, law)
         self.body: BodyNumbers
-        self.like: complex  # a number of the kind of its positions
+        self.zero: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
-            self.body, self.like = on_the_line(self.mass), 0.0
+            self.body, self.zero = on_the_line(self.mass), 0.0
         else:
-            self.body, self.like = in_the_plane(for_kernels(self.mass)), 0j
+            self.body, self.zero = in_the_plane(for_kernels(self.mass)), 0j
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
         self.maps = held_maps(law, self.body)
         linear = scene.is_harmonic and not self.body.bends
-        constant = linear and not isinstance(self.like, complex) and slides_saturated(law)
+        constant = linear and not isinstance(self.zero, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
-        self.size = interpreted(whole_size_of)(law, self.body, self.like)  # of a state
-        self.kind = map_kind(law, isinstance(self.like, complex) or bool(self.body.relaxing))
+        self.size = interpreted(whole_size_of)(law, self.body, self.zero)  # of a state
+        self.kind = map_kind(law, isinstance(self.zero, complex) or bool(self.body.relaxing))
         self._slides: dict[float, tuple[complex, complex]] = {}  # places, by the friction that shifts them
 
     @property
     def by_implicit_steps(self) -> Self | None:
         """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
         if (
-            not (isinstance(self.like, complex) and self.goal.contracts)
+            not (isinstance(self.zero, complex) and self.goal.contracts)
             or self.body.varying
             or self.body.relaxing
         ):
@@ -162,7 +162,7 @@ class PeriodicProblem:
         """Whether eight are answered at once: motions in the plane that converge, without memory, under loads of one
         sine, of a curve that has more than a few points."""
         planar = (
-            isinstance(self.like, complex)
+            isinstance(self.zero, complex)
             and self.kernel is answer_curve
             and not self.body.varying
             and not self.body.relaxing
@@ -264,13 +264,13 @@ class PeriodicProblem:
     def positions(self, states: Floats) -> tuple[Floats, Floats]:
         """Position and velocity along x1 of states at the start of a period."""
         sine, cosine = complex(self.body.reference_sine), complex(self.body.reference_cosine)
-        pairs = [interpreted(unpack)(self.body, state, self.like) for state in states]
+        pairs = [interpreted(unpack)(self.body, state, self.zero) for state in states]
         x = np.array([complex(y).real for y, _ in pairs]) + cosine.real
         return x, np.array([complex(u).real for _, u in pairs]) + self.body.frequency * sine.real
 
     def runs_away(self, state: Floats) -> bool:
         """Whether a mass in this state never comes back."""
-        x, _velocity = interpreted(unpack)(self.body, state, self.like)
+        x, _velocity = interpreted(unpack)(self.body, state, self.zero)
         return bool(interpreted(runs_away)(self.body, x))
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
@@ -280,7 +280,7 @@ class PeriodicProblem:
         friction = self.law.sliding_friction(abs(belt_speed)) if self.law.count() > 0 else 0.0
         friction = math.copysign(friction, belt_speed)
         if friction not in self._slides:
-            x, v, _z = interpreted(state_of_sliding)(self.body, friction, self.like)
+            x, v, _z = interpreted(state_of_sliding)(self.body, friction, self.zero)
             self._slides[friction] = complex(x), complex(v)
         return self._slides[friction]
 

@@ -145,8 +145,8 @@ class LawOnBody(NamedTuple):
     body: BodyNumbers
 
 
-_of_kind = by_dimension(lambda value, like: value.real, lambda value, like: value)
-"""_of_kind(value, like): a vector as the kind of number that motions are told by."""
+_of_kind = by_dimension(lambda value, zero: value.real, lambda value, zero: value)
+"""_of_kind(value, zero): a vector as the kind of number that motions are told by."""
 
 
 @inner
@@ -172,15 +172,15 @@ def _followed_by(image_of_state: Any) -> Any:
 def _rest(on: LawOnBody, belt_speed: float, periods: float, state: Any) -> float:
     body = _over(on.body, periods)
     case = case_of(on.law, body, belt_speed)
-    y, _u = unpack(body, state, case.like)
+    y, _u = unpack(body, state, case.zero)
     # the belt carries the mass until the spring overcomes friction: all whole spans before that are alike
     return rest_of(on.law, body, belt_speed, y + belt_advance(body, belt_speed))
 
 
 @inner
 def _start(on: LawOnBody, state: Any, x: complex, v: complex, z: complex) -> float:
-    like = case_of(on.law, on.body, 0.0).like
-    start_of(on.law, on.body, state, _of_kind(x, like), _of_kind(v, like), _of_kind(z, like))
+    zero = case_of(on.law, on.body, 0.0).zero
+    start_of(on.law, on.body, state, _of_kind(x, zero), _of_kind(v, zero), _of_kind(z, zero))
     return 0.0
 
 
@@ -201,7 +201,7 @@ def _guess(on: LawOnBody, belt_speed: float, state: Any) -> float:
 
 @inner
 def _free(on: LawOnBody, periods: float, rubbing: float, inverse: Any) -> float:
-    free_inverse(_over(on.body, periods), rubbing, inverse, case_of(on.law, on.body, 0.0).like)
+    free_inverse(_over(on.body, periods), rubbing, inverse, case_of(on.law, on.body, 0.0).zero)
     return 0.0
 
 
@@ -250,16 +250,16 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
     @inner
     def maps_of(law: Any, body: BodyNumbers) -> Any:
         on = LawOnBody(law, bare(body))
-        like = case_of(law, body, 0.0).like
+        zero = case_of(law, body, 0.0).zero
         room = np.empty(bytes_of(on), np.uint8)
         at = addresses(on)
-        grain, per_time = grain_of(law, on.body, like)
+        grain, per_time = grain_of(law, on.body, zero)
         scales = scales_on(_over(body, 1.0))
         remembers = _has_memory(law)
-        scalars = Scalars(2 * dimension(like), size_of(law, like), unit_of_scalars(law, on.body, like))
+        scalars = Scalars(2 * dimension(zero), size_of(law, zero), unit_of_scalars(law, on.body, zero))
         return room, Maps(
             written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
-            whole_size_of(law, body, like), scalars, remembers, dimension(like) == 2, scales, swing_of(on.body),
+            whole_size_of(law, body, zero), scalars, remembers, dimension(zero) == 2, scales, swing_of(on.body),
             of_memory if remembers else of_sliding,
             coarsest_of(law, on.body), grain, per_time,
         )  # fmt: skip

@@ -30,10 +30,10 @@ GRAZING = 1e-5
 
 
 @inner
-def state_of_sliding(body: BodyNumbers, friction: float, like: Any) -> Any:
+def state_of_sliding(body: BodyNumbers, friction: float, zero: Any) -> Any:
     """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
     shift = equilibrium(body, body.normal_load * friction, 0.0)
-    return free_cosine(body) + shift + 0.0 * like, body.frequency * free_sine(body), 0.0 * like
+    return free_cosine(body) + shift + 0.0 * zero, body.frequency * free_sine(body), 0.0 * zero
 
 
 memory_of_sliding = by_law(
@@ -50,9 +50,9 @@ def write_sliding(case: Case, state: Any) -> float:
 
     Returns the coefficient of that, with the sign of the belt.
     """
-    law, body, belt_speed, like = case
+    law, body, belt_speed, zero = case
     friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
-    x, v, z = state_of_sliding(body, friction, like)
+    x, v, z = state_of_sliding(body, friction, zero)
     start_of(law, body, state, x, v, z - memory_of_sliding(law, belt_speed))
     deviate_evenly(body, state)
     return friction
@@ -71,13 +71,13 @@ def _impulse_response(body: BodyNumbers) -> float:
     )
 
 
-def _creep_on_the_line(case: Case, state: Any, like: float) -> float:
+def _creep_on_the_line(case: Case, state: Any, zero: float) -> float:
     law, body, belt_speed, _like = case
     stiffness = body.stiffness_mean + body.stiffness_split
-    y, u = unpack(body, state, like)
-    work = workspace(law, like, contact_kind(body))
-    measure_scales(law, body, work, like)
-    unpack_memory(law, body, work, state, like)
+    y, u = unpack(body, state, zero)
+    work = workspace(law, zero, contact_kind(body))
+    measure_scales(law, body, work, zero)
+    unpack_memory(law, body, work, state, zero)
     z, nudge, fastest = work.start[MEMORY], 1e-3 * law.largest_deflection(), -2.0 * belt_speed
     rate = law.rate(fastest, z)
     friction = law.friction(fastest, z, 0.0)
@@ -91,9 +91,9 @@ def _creep_on_the_line(case: Case, state: Any, like: float) -> float:
     return left + _impulse_response(body) * body.normal_load * slope * abs(rate)
 
 
-_creep_of_body = by_relaxing(_creep_on_the_line, lambda case, state, like: math.inf)
+_creep_of_body = by_relaxing(_creep_on_the_line, lambda case, state, zero: math.inf)
 _creep = by_dimension(
-    lambda case, state, like: _creep_of_body(case, state, like), lambda case, state, like: math.inf
+    lambda case, state, zero: _creep_of_body(case, state, zero), lambda case, state, zero: math.inf
 )
 """A bound on the speed of the deviation from the vibration, from now on; none for bristles that are damped."""
 
@@ -108,7 +108,7 @@ def _ends_with_a_bristle(case: Case, state: Any) -> bool:
     Friction that only grows to its limit, no faster than at the fastest slip, moves the mass at its quasi-static
     place; off it, energy falls. While both together leave the mass slower than the belt no slip reverses.
     """
-    _law, body, belt_speed, like = case
+    _law, body, belt_speed, zero = case
     target = np.empty(state.size)
     write_sliding(case, target)
     subtract(target, state, target)
@@ -116,7 +116,7 @@ def _ends_with_a_bristle(case: Case, state: Any) -> bool:
     write_sliding(case, target)
     margin = abs(belt_speed) - swing_of(body)
     ends = margin <= GRAZING * swing_of(body) and distance < NEAR * (1.0 + norm(target))
-    ends = ends or _creep(case, state, like) < margin
+    ends = ends or _creep(case, state, zero) < margin
     for row in range(state.size if ends else 0):
         state[row] = target[row]
     return ends

@@ -45,8 +45,8 @@ class MemoryPoint:
     def __init__(self, scene: Scene, law: MemoryLaw, tolerance: float) -> None:
         self.motion, self.belt_speed = scene.motion(), scene.belt_speed
         self.law = law.under_load(self.motion.normal_load)
-        self.like: complex = 0.0 if scene.load_along_belt_only else 0j
-        self.body = driven(self.motion, self.like)
+        self.zero: complex = 0.0 if scene.load_along_belt_only else 0j
+        self.body = driven(self.motion, self.zero)
         self.maps = held_maps(self.law, self.body)
         self.slip = None if scene.is_harmonic else VaryingSlip.of(scene.signals(), self.motion.normal_load)
         self.status: Status = "ok"
@@ -65,7 +65,7 @@ class MemoryPoint:
         return abs(self.motion.velocity) + abs(self.motion.transverse_velocity)
 
     def _answer(self, tolerance: float) -> PrescribedMean:
-        guess = np.zeros((1, interpreted(size_of)(self.law, self.like)))
+        guess = np.zeros((1, interpreted(size_of)(self.law, self.zero)))
         self.goal = Goal(tolerance, False, True, False)
         curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
@@ -126,16 +126,16 @@ class MemoryPoint:
         return Orbit(tau, x, v, friction, stick) if self.slip is None else self.slip.orbit(tau, friction)
 
 
-def driven(motion: Motion, like: complex) -> BodyNumbers:
+def driven(motion: Motion, zero: complex) -> BodyNumbers:
     """A body that does what is prescribed; its spring and dashpot only tell a state's units.
 
     A sine is its reference motion. Of any other slip the body stays where it is, and the belt goes the other way.
     """
-    omega, across, varying = motion.frequency, motion.transverse_velocity, _moved_belt(motion.varying, like)
+    omega, across, varying = motion.frequency, motion.transverse_velocity, _moved_belt(motion.varying, zero)
     share = 0.0 if varying else 1.0 / omega
     sine = share * complex(motion.velocity.imag, across.imag)
     cosine = -share * complex(motion.velocity.real, across.real)
-    parts: Any = (sine, cosine, 0j) if isinstance(like, complex) else (sine.real, cosine.real, 0.0)
+    parts: Any = (sine, cosine, 0j) if isinstance(zero, complex) else (sine.real, cosine.real, 0.0)
     return BodyNumbers(
         damping_mean=2.0,
         damping_split=0.0,
@@ -155,9 +155,9 @@ def driven(motion: Motion, like: complex) -> BodyNumbers:
     )
 
 
-def _moved_belt(varying: Any, like: complex) -> Any:
+def _moved_belt(varying: Any, zero: complex) -> Any:
     """What varies, where the belt moves instead of the body."""
     if not varying:
         return varying
     moved = varying._replace(belt=varying.belt.scaled(-1.0))
-    return packed(moved, isinstance(like, complex))
+    return packed(moved, isinstance(zero, complex))

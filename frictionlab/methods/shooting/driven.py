@@ -159,7 +159,7 @@ class SteadyStates:
         self.period, self.multipliers, self.seconds = np.full((3, n), np.nan)
         self.error_kind = ["estimated"] * n
         self.spans = np.ones(n, np.int64)
-        self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
+        self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.zero, complex)
         judged_by_multipliers = not problem.goal.contracts or undamped(scenes[0])
         self.matrices: list[Floats | None] = [None] * n
         self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
@@ -527,7 +527,7 @@ def _at_rest(curve: Curve, row: int) -> bool:
 
 
 def _model(scene: Scene, problem: PeriodicProblem, solved_by: PeriodicProblem) -> str:
-    planar = isinstance(problem.like, complex)
+    planar = isinstance(problem.zero, complex)
     words = [
         ModelWord.SHOOTING_PLANE if planar else ModelWord.SHOOTING_LINE,
         ModelWord.X2_DECAYS if scene.degrees_of_freedom == 2 and not planar else "",

@@ -20,12 +20,12 @@ from frictionlab.scene.body import BodyNumbers
 
 
 class Case(NamedTuple):
-    """A law and a body on a belt; ``like`` is a zero of the kind of its positions, float or complex."""
+    """Law and body on a belt; ``zero`` is a zero of the kind of its positions, float or complex."""
 
     law: Any
     body: BodyNumbers
     belt_speed: float
-    like: Any
+    zero: Any
 
 
 @inner
@@ -37,7 +37,7 @@ def case_of(law: Any, body: BodyNumbers, belt_speed: float) -> Case:
 @inner
 def case_in_piece(case: Case, k: int) -> Case:
     """The case as the k-th piece of its span has it."""
-    return Case(case.law, in_piece(case.body, k), case.belt_speed, case.like)
+    return Case(case.law, in_piece(case.body, k), case.belt_speed, case.zero)
 
 
 MOST_KEPT = 4096

@@ -86,21 +86,21 @@ _away = by_dimension(
 
 
 @inner
-def _keep_by_slip(work: Work, n: int, like: Any) -> None:
+def _keep_by_slip(work: Work, n: int, zero: Any) -> None:
     """Make the blocks of the columns: by each direction of slip, the rates of all numbers, then friction."""
     for k in range(n):
-        keep(work.jacobian, 3 * k, from_columns(work.columns[k], work.columns[n + 1 + k]), like)
-    keep(work.jacobian, 3 * n, from_columns(work.columns[n], work.columns[2 * n + 1]), like)
+        keep(work.jacobian, 3 * k, from_columns(work.columns[k], work.columns[n + 1 + k]), zero)
+    keep(work.jacobian, 3 * n, from_columns(work.columns[n], work.columns[2 * n + 1]), zero)
 
 
 @fast
-def _deflections_by_slip(flow: Flow, w: Any, work: Work, like: Any) -> Any:
+def _deflections_by_slip(flow: Flow, w: Any, work: Work, zero: Any) -> Any:
     n, least = count_of(flow.law), _least(flow, w)
     # a quotient across the reversal of slip, or across the unloading of what yields, would mix both sides
     w = _away(flow, 2.0 * least, work, w)
     share = 0.5 / least
-    for column in range(dimension(like)):
-        shift, first = least * unit(column, like), (n + 1) * column
+    for column in range(dimension(zero)):
+        shift, first = least * unit(column, zero), (n + 1) * column
         ahead = friction_in_mode(flow.law, work, w + shift)
         for k in range(n):
             work.columns[2 * n + 2 + k] = work.moving[k]
@@ -108,7 +108,7 @@ def _deflections_by_slip(flow: Flow, w: Any, work: Work, like: Any) -> Any:
         for k in range(n):
             work.columns[first + k] = share * (work.columns[2 * n + 2 + k] - work.moving[k])
         work.columns[first + n] = share * (ahead - behind)
-    _keep_by_slip(work, n, like)
+    _keep_by_slip(work, n, zero)
     return w
 
 
@@ -125,7 +125,7 @@ _beside_rest = by_dimension(
 
 
 @inner
-def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, like: Any) -> float:
+def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, zero: Any) -> float:
     """The quotient of friction by slip on the scale of the slip; returns by how much that was moved."""
     n, swing = count_of(flow.law), swing_of(flow.body) + abs(flow.belt_speed)
     scale, slow, least = work.creep[SCALE], work.creep[SLOW], LOST * swing
@@ -133,8 +133,8 @@ def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, like: Any) -> fl
     slowest = NUDGE * (scale if scale > 0.0 else slow) if slow > 0.0 else least
     shift = max(NUDGE * length(w), slowest)
     while True:
-        ahead = friction_in_mode(flow.law, work, w + shift * unit(column, like))
-        behind = friction_in_mode(flow.law, work, w - shift * unit(column, like))
+        ahead = friction_in_mode(flow.law, work, w + shift * unit(column, zero))
+        behind = friction_in_mode(flow.law, work, w - shift * unit(column, zero))
         work.columns[(n + 1) * column + n] = (ahead - behind) / (2.0 * shift)
         # what rounding leaves of the difference is too little: move the slip by more
         if not shift < least or length(ahead - behind) > LOST * (length(ahead) + length(behind)):
@@ -143,26 +143,26 @@ def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, like: Any) -> fl
 
 
 @inner
-def _scalars_by_slip(flow: Flow, w: Any, work: Work, like: Any) -> Any:
+def _scalars_by_slip(flow: Flow, w: Any, work: Work, zero: Any) -> Any:
     n, least = count_of(flow.law), LOST * (swing_of(flow.body) + abs(flow.belt_speed))
-    for column in range(dimension(like)):
-        shift, there = _creep_by_slip(flow, w, work, column, like), w
+    for column in range(dimension(zero)):
+        shift, there = _creep_by_slip(flow, w, work, column, zero), w
         # rates of scalars do not change with a slip as slow as creep: move it by what matters to them
         if shift < least:
             shift, there = least, _beside_rest(2.0 * least, w)
-        friction_in_mode(flow.law, work, there + shift * unit(column, like))
+        friction_in_mode(flow.law, work, there + shift * unit(column, zero))
         for k in range(n):
-            work.columns[2 * n + 2 + k] = work.moving[k] + 0.0 * like
-        friction_in_mode(flow.law, work, there - shift * unit(column, like))
+            work.columns[2 * n + 2 + k] = work.moving[k] + 0.0 * zero
+        friction_in_mode(flow.law, work, there - shift * unit(column, zero))
         for k in range(n):
             difference = work.columns[2 * n + 2 + k] - work.moving[k]
             work.columns[(n + 1) * column + k] = difference / (2.0 * shift)
-    _keep_by_slip(work, n, like)
+    _keep_by_slip(work, n, zero)
     return w
 
 
 _by_slip = by_scalars(_deflections_by_slip, _scalars_by_slip)
-"""_by_slip(flow, w, work, like): B of every number, and G; returns the slip at which to ask for the other blocks."""
+"""_by_slip(flow, w, work, zero): B of every number, and G; returns the slip at which to ask for the other blocks."""
 
 
 class Sides(NamedTuple):
@@ -191,21 +191,21 @@ def _sides(flow: Flow, w: Any, k: int, shift: Any, work: Work) -> Sides:
 
 
 @inner
-def _keep_by_number(work: Work, k: int, like: Any) -> None:
+def _keep_by_number(work: Work, k: int, zero: Any) -> None:
     """Make A and F of the columns: by each direction of a number its rate, then friction."""
-    keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), like)
-    keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), like)
+    keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), zero)
+    keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), zero)
 
 
 @fast
-def _centrally(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+def _centrally(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
     nudge = NUDGE * work.size[k]
     share = 0.5 / nudge
-    for column in range(dimension(like)):
-        at = _sides(flow, w, k, nudge * unit(column, like), work)
+    for column in range(dimension(zero)):
+        at = _sides(flow, w, k, nudge * unit(column, zero), work)
         work.columns[2 * column] = share * (at.ahead - at.behind)
         work.columns[2 * column + 1] = share * (at.friction_ahead - at.friction_behind)
-    _keep_by_number(work, k, like)
+    _keep_by_number(work, k, zero)
 
 
 @inner
@@ -218,45 +218,45 @@ def _flatter(ahead: Any, here: Any, behind: Any, h: float) -> Any:
 
 
 @inner
-def _flatly(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+def _flatly(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
     """Of a deflection by its own rate, which may have a corner that the law does not declare."""
     nudge = FINE * work.size[k]
     friction = friction_of(flow.law, work.memory, work.moving, w)
-    for column in range(dimension(like)):
-        at = _sides(flow, w, k, nudge * unit(column, like), work)
+    for column in range(dimension(zero)):
+        at = _sides(flow, w, k, nudge * unit(column, zero), work)
         work.columns[2 * column] = _flatter(at.ahead, work.moving[k], at.behind, nudge)
         work.columns[2 * column + 1] = _flatter(at.friction_ahead, friction, at.friction_behind, nudge)
-    _keep_by_number(work, k, like)
+    _keep_by_number(work, k, zero)
 
 
 @inner
-def _bristle(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
-    _centrally(flow, w, k, work, like)
+def _bristle(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
+    _centrally(flow, w, k, work, zero)
 
 
 @inner
-def _deflection(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+def _deflection(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
     if work.mode[k] == SMOOTH:
-        _flatly(flow, w, k, work, like)
+        _flatly(flow, w, k, work, zero)
     else:
-        _centrally(flow, w, k, work, like)
+        _centrally(flow, w, k, work, zero)
 
 
 @inner
-def _scalar(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+def _scalar(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
     """Of a number without direction, on the scale of what it is: it may range over decades."""
     least = 0.0 if work.positive[k] > 0.0 else LOST * work.size[k]
     shift = max(NUDGE * abs(work.memory[k]), least)
     friction = friction_of(flow.law, work.memory, work.moving, w)
     at = _sides(flow, w, k, shift, work)
     by_itself = _flatter(at.ahead, work.moving[k], at.behind, shift)
-    keep(work.jacobian, 3 * k + 1, multiple(by_itself, like), like)
+    keep(work.jacobian, 3 * k + 1, multiple(by_itself, zero), zero)
     by_scalar = _flatter(at.friction_ahead, friction, at.friction_behind, shift)
-    keep(work.jacobian, 3 * k + 2, multiple(by_scalar, like), like)
+    keep(work.jacobian, 3 * k + 2, multiple(by_scalar, zero), zero)
 
 
 _by_memory = by_law(_bristle, _bristle, _deflection, _scalar)
-"""_by_memory(flow, w, k, work, like): A and F of one number; the rates of all are in ``work.moving`` and stay."""
+"""_by_memory(flow, w, k, work, zero): A and F of one number; the rates of all are in ``work.moving`` and stay."""
 
 
 @inner
@@ -266,44 +266,44 @@ def _swell(body: BodyNumbers, now: Instant) -> float:
 
 
 @inner
-def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) -> None:
+def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) -> None:
     """In time the loads change, and the slip of a mass whose deviation stays as it is; rub: the coefficient."""
     body, n = flow.body, count_of(flow.law)
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
-    turn = turn + 0.0 * like
+    turn = turn + 0.0 * zero
     load, pressed = unbalanced_rate(body, now), load_on(body, now)
-    friction = apply(block(work.jacobian, 3 * n, like), turn)
-    work.slope[Y], work.slope[U] = 0.0 * like, load - pressed * friction - _swell(body, now) * rub
+    friction = apply(block(work.jacobian, 3 * n, zero), turn)
+    work.slope[Y], work.slope[U] = 0.0 * zero, load - pressed * friction - _swell(body, now) * rub
     swollen = normal_load_rate(body, now) / body.normal_load
     work.slope[IMPULSE] = load_share(body, now) * friction + swollen * rub
     for k in range(n):
-        work.slope[MEMORY + k] = apply(block(work.jacobian, 3 * k, like), turn)
+        work.slope[MEMORY + k] = apply(block(work.jacobian, 3 * k, zero), turn)
 
 
 @inner
-def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) -> None:
+def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) -> None:
     """In time the loads change, and the deviation of a mass whose slip stays as it is."""
     body = flow.body
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
-    turn = turn + 0.0 * like
+    turn = turn + 0.0 * zero
     jerk = -(body.frequency**2) * reference_velocity(body, now.sine, now.cosine)
     jerk = jerk - belt_jerk(body, flow.belt_speed, now)
     work.slope[Y], work.slope[IMPULSE] = -turn, (normal_load_rate(body, now) / body.normal_load) * rub
     load = unbalanced_rate(body, now) - _swell(body, now) * rub
     work.slope[U] = load + jerk + restoring_force(springs_at(flow, work), 0.0 * turn, turn)
     for k in range(count_of(flow.law)):
-        work.slope[MEMORY + k] = 0.0 * like
+        work.slope[MEMORY + k] = 0.0 * zero
     first = MEMORY + count_of(flow.law)
     for k in range(elements_of(body)):
-        work.slope[first + k] = relaxing_rate(body, k, 0.0, -turn) + 0.0 * like
+        work.slope[first + k] = relaxing_rate(body, k, 0.0, -turn) + 0.0 * zero
 
 
 _slope = by_scalars(_slope_of_deviation, _slope_of_slip)
-"""_slope(flow, now, rub, work, like): fill ``work.slope`` by the state that is held fixed."""
+"""_slope(flow, now, rub, work, zero): fill ``work.slope`` by the state that is held fixed."""
 
 
 @inner
-def _by_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
+def _by_share(work: Work, flow: Flow, now: Instant, w: Any, zero: Any) -> None:
     """What a changing load adds where the contact keeps its stiffness: its share is a part of every deflection."""
     law, body, n = flow.law, flow.body, count_of(flow.law)
     share, rate, bend = work.share[0], work.share[1], work.share[2]
@@ -312,14 +312,14 @@ def _by_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
     strain = rate / share
     turn = bend / share - strain * strain  # its rate
     for k in range(n):
-        stretched = add(block(work.jacobian, 3 * k + 1, like), diagonal(-strain, 0.0, like), like)
-        keep(work.jacobian, 3 * k + 1, stretched, like)
+        stretched = add(block(work.jacobian, 3 * k + 1, zero), diagonal(-strain, 0.0, zero), zero)
+        keep(work.jacobian, 3 * k + 1, stretched, zero)
     # z'/n of a deflection that yields is its turning and what keeps up with the load, of any other the law's over n
     here = friction_of(law, work.memory, work.moving, w)
     for k in range(n):
         z, yields = work.memory[k], 1.0 if work.mode[k] == YIELDS and work.radius[k] > 0.0 else 0.0
         change = -strain * (work.moving[k] - yields * stretching(work, z))
-        work.slope[MEMORY + k] = work.slope[MEMORY + k] + change - (1.0 - yields) * turn * z + 0.0 * like
+        work.slope[MEMORY + k] = work.slope[MEMORY + k] + change - (1.0 - yields) * turn * z + 0.0 * zero
         work.moving[k] = work.moving[k] + change + yields * turn * z
     more = friction_of(law, work.memory, work.moving, w) - here
     pressed = load_on(body, now)
@@ -329,21 +329,21 @@ def _by_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
 
 _slope_of_share = by_contact(
     # the contact follows the load
-    lambda work, flow, now, w, like: None,
+    lambda work, flow, now, w, zero: None,
     _by_share,
 )
 
 
 @inner
-def linearize(flow: Flow, tau: float, work: Work, like: Any) -> None:
+def linearize(flow: Flow, tau: float, work: Work, zero: Any) -> None:
     """Fill ``work.jacobian`` and the slopes in time at ``work.start``."""
     n, now = count_of(flow.law), instant_near(flow, tau)
     note_share(work, flow.body, now)
     for k in range(n):
         work.memory[k] = as_memory(flow.law, work.start[MEMORY + k])
-    w = _by_slip(flow, slip_held(flow, now, work.start[U]), work, like)
+    w = _by_slip(flow, slip_held(flow, now, work.start[U]), work, zero)
     rub = friction_in_mode(flow.law, work, w)  # and the rates of all, which the quotients by one leave alone
     for k in range(n):
-        _by_memory(flow, w, k, work, like)
-    _slope(flow, now, rub, work, like)
-    _slope_of_share(work, flow, now, w, like)
+        _by_memory(flow, w, k, work, zero)
+    _slope(flow, now, rub, work, zero)
+    _slope_of_share(work, flow, now, w, zero)

@@ -89,12 +89,12 @@ LAYER = 40.0
 
 
 @inner
-def _while_into(part: float, flow: Flow, h: float, work: Work, like: Any) -> Any:
+def _while_into(part: float, flow: Flow, h: float, work: Work, zero: Any) -> Any:
     """A while into the last step, of h."""
     body, now = flow.body, instant_near(flow, flow.anchor + part)
     within_step(flow, part / h, work)
     y, u = work.stage[Y], work.stage[U]
-    fill_rates(flow, now, work, like)
+    fill_rates(flow, now, work, zero)
     x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
     return x, velocity_held(flow, now, u), work.rates[IMPULSE]
 
@@ -109,17 +109,17 @@ _side = by_dimension(
 
 _guarded = by_dimension(
     # on the line the guard of slip sees to it
-    lambda node, w, a, h, like: False,
-    lambda node, w, a, h, like: dips(node.w, node.a, w, a, h),
+    lambda node, w, a, h, zero: False,
+    lambda node, w, a, h, zero: dips(node.w, node.a, w, a, h),
 )
 _unguarded = by_dimension(
-    lambda node, w, a, h, like: node.w * w > 0.0 and dips(node.w, node.a, w, a, h),
-    lambda node, w, a, h, like: dips(node.w, node.a, w, a, h),
+    lambda node, w, a, h, zero: node.w * w > 0.0 and dips(node.w, node.a, w, a, h),
+    lambda node, w, a, h, zero: dips(node.w, node.a, w, a, h),
 )
 
 _dip = by_scalars(
-    lambda law, node, w, a, h, like: _guarded(node, w, a, h, like),
-    lambda law, node, w, a, h, like: _unguarded(node, w, a, h, like),
+    lambda law, node, w, a, h, zero: _guarded(node, w, a, h, zero),
+    lambda law, node, w, a, h, zero: _unguarded(node, w, a, h, zero),
 )
 """Whether slip comes much closer to rest within a step from a node than at its ends."""
 
@@ -154,11 +154,11 @@ _layer = by_dimension(_layer_on_the_line, lambda work, covered, share, a, w: OPE
 
 
 @inner
-def _at_start(flow: Flow, work: Work, like: Any) -> Any:
+def _at_start(flow: Flow, work: Work, zero: Any) -> Any:
     """Slip and its rate where the step starts."""
     for row in range(rows_of(flow)):
         work.end[row] = work.start[row]
-    return rates_at_end(flow, flow.anchor, work, like)
+    return rates_at_end(flow, flow.anchor, work, zero)
 
 
 @inner
@@ -166,7 +166,7 @@ def _flow_of(case: Case, tau: float, work: Work) -> Flow:
     """The flow at this time with the modes and the side that the state in ``work.start`` has."""
     flow = anchored(case.law, case.body, case.belt_speed, 1.0, tau)
     # the side of slip is needed for the rates, and they for the side of a slip that is zero
-    w, a = _at_start(flow, work, case.like)
+    w, a = _at_start(flow, work, case.zero)
     begin(flow, a, w, work)
     return anchored(case.law, case.body, case.belt_speed, _side(w, a), tau)
 
@@ -190,10 +190,10 @@ class MemoryStep(NamedTuple):
 
 @inner
 def _end_of_step(
-    flow: Flow, node: MemoryNode, h: float, accuracy: float, work: Work, like: Any
+    flow: Flow, node: MemoryNode, h: float, accuracy: float, work: Work, zero: Any
 ) -> MemoryStep:
     """What becomes of a step of h that is accurate enough."""
-    w, a = rates_at_end(flow, node.tau + h, work, like)
+    w, a = rates_at_end(flow, node.tau + h, work, zero)
     # the step ends at the first event in it, wherever in the step that is
     guard = lowest(flow, w, a, work)
     if guard.value <= 0.0:
@@ -201,45 +201,45 @@ def _end_of_step(
         stays = node.leaving and work.guards[2 * guard.number] <= -1e-3 * guard.value
         if stays and h * flow.body.frequency > 1e-12:
             return MemoryStep(0.25 * h, True, False)
-        return MemoryStep(locate(flow, node.tau, h, accuracy, work, like), False, True)
+        return MemoryStep(locate(flow, node.tau, h, accuracy, work, zero), False, True)
     if node.leaving:
         return MemoryStep(h, False, False)
     # between two ends without events a guard may have passed zero twice, or slip come close to rest
     shorter = hidden(flow, h, w, a, work)
     if shorter == h and min(length(node.w), length(w)) > 10.0 * accuracy:
-        shorter = 0.5 * h if _dip(flow.law, node, w, a, h, like) else h
+        shorter = 0.5 * h if _dip(flow.law, node, w, a, h, zero) else h
     return MemoryStep(shorter, shorter < h, False)
 
 
 @inner
-def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> MemoryNode:
+def _depart(flow: Flow, leaving: bool, work: Work, zero: Any) -> MemoryNode:
     """Get ready for steps from ``work.start``, at the anchor of the flow."""
     # guards at the start, to be compared with those at the end, and the blocks of all stages
-    w, a = _at_start(flow, work, like)
+    w, a = _at_start(flow, work, zero)
     note_guards(flow, w, a, work)
     note_creep(flow, w, a, work)
-    linearize(flow, flow.anchor, work, like)
+    linearize(flow, flow.anchor, work, zero)
     return MemoryNode(flow.anchor, w, a, leaving)
 
 
 @inner
-def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
+def _arrive(flow: Flow, tau: float, ends: bool, work: Work, zero: Any) -> float:
     """Let the end of a step be the start of the next; returns the side of slip there."""
     side = flow.side
     if ends:
-        w, a = rates_at_end(flow, tau, work, like)
+        w, a = rates_at_end(flow, tau, work, zero)
         side = change(flow, w, a, work)
     for row in range(rows_of(flow)):
         work.start[row] = work.end[row]
     restore(flow, work)
     if flow.body.prescribed:  # the reference is the motion: no error of a step adds up
-        work.start[Y] = 0.0 * like
-        work.start[U] = held_velocity(flow, instant_near(flow, tau), 0.0 * like)
+        work.start[Y] = 0.0 * zero
+        work.start[U] = held_velocity(flow, instant_near(flow, tau), 0.0 * zero)
     return side
 
 
 @inner
-def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
+def follow(flow: Flow, end: float, how: Stepping, work: Work, zero: Any) -> Any:
     """The motion from ``work.start``, and back into it, until ``end``, all between two corners of what changes in
     time; returns the smallest slip speed and the steps.
 
@@ -250,12 +250,12 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
     friction = usual_friction(law, body)
     longest = longest_step(body, friction, accuracy)
     began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
-    node, h, steps = _depart(flow, True, work, like), 0.1 * longest, 0
+    node, h, steps = _depart(flow, True, work, zero), 0.1 * longest, 0
     closest = length(node.w)
     while end - node.tau > 4e-15 * end:
         h = min(h, longest, end - node.tau, longest_while_slow(law, work, node.a))
         # one step: too inaccurate, it is repeated shorter
-        growth = growth_factor(step(flow, node.tau, h, work, like) / accuracy, 5.0)
+        growth = growth_factor(step(flow, node.tau, h, work, zero) / accuracy, 5.0)
         steps += 1
         if steps > MOST_STEPS or runs_away(body, work.start[Y]):
             return closest, -1
@@ -265,7 +265,7 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
         # an event cuts a step short, but says nothing about how long the next may be
         usual, tried = h * growth, h
         within = min(accuracy, OF_EVENTS) if pace.lengths.size > 0 else accuracy
-        ending = _end_of_step(flow, node, h, within, work, like)
+        ending = _end_of_step(flow, node, h, within, work, zero)
         h = ending.h
         if ending.repeats:
             continue
@@ -274,10 +274,10 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
         keep_step(pace, OPEN if tau == end and not ending.ends else tried, 1 if ending.ends else 0)
         if track.stick.size > 0:
             bend(flow, work)
-            _note(track, node.tau, h, False, flow, h, work, like)
+            _note(track, node.tau, h, False, flow, h, work, zero)
         # sine and cosine within a step are expanded about its start
-        flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, like), tau)
-        node = _depart(flow, ending.ends, work, like)
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, zero), tau)
+        node = _depart(flow, ending.ends, work, zero)
         closest = min(closest, length(node.w))
         # a reversal begins a layer, where steps grow with the way; none is known behind the start of the span
         began = _position(flow, work.start[Y]) if ending.ends else began
@@ -289,7 +289,7 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
 
 
 @inner
-def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, like: Any) -> int:
+def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, zero: Any) -> int:
     """The motion from ``work.start``, and back into it, until ``end`` by the steps of another motion close by.
 
     first: the number of the first of them. Steps end at the events of their own motion: the numbers at the end are
@@ -299,23 +299,23 @@ def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, like: 
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
     pace, within = how.pace, min(how.accuracy, OF_EVENTS)
     last, tau = pace.taken[0] - 1, flow.anchor
-    _depart(flow, True, work, like)
+    _depart(flow, True, work, zero)
     for k in range(first, last + 1):
         if creeps(law, work):  # how long a slip takes to come to creep is not seen by steps of another motion
             return -1
         # where events come earlier or later, the last step makes up for it
         h = end - tau if k == last else min(pace.lengths[k], end - tau)
-        step(flow, tau, h, work, like)
-        w, a = rates_at_end(flow, tau + h, work, like)
+        step(flow, tau, h, work, zero)
+        w, a = rates_at_end(flow, tau + h, work, zero)
         if (lowest(flow, w, a, work).value <= 0.0) != (pace.endings[k] == 1):
             return -1
         if pace.endings[k] == 1:
-            h = locate(flow, tau, h, within, work, like)
+            h = locate(flow, tau, h, within, work, zero)
         tau = tau + h if end - tau > h else end
-        flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, like), tau)
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, zero), tau)
         if end - tau <= 4e-15 * end:
             return k + 1
-        _depart(flow, pace.endings[k] == 1, work, like)
+        _depart(flow, pace.endings[k] == 1, work, zero)
     return -1
 
 
@@ -351,10 +351,10 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
 
     Where it repeats kept steps it gives up where they do not fit.
     """
-    law, body, like = case.law, case.body, case.like
+    law, body, zero = case.law, case.body, case.zero
     free = 0.0 if body.prescribed else 1.0  # the reference is the motion
     work.start[Y] = free * y
-    work.start[IMPULSE] = 0.0 * like
+    work.start[IMPULSE] = 0.0 * zero
     how = Stepping(min(how.accuracy, coarsest(law, body)), how.track, how.pace, how.repeats)
     work.creep[SLOW] = free * BELOW * how.accuracy
     u, closest, steps = free * u, OPEN, 0
@@ -365,9 +365,9 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
         work.start[U] = held_velocity(start, instant_at(body, tau), u)
         flow = _flow_of(here, tau, work)
         if how.repeats:
-            closest, steps = 0.0, repeat(flow, end, steps, how, work, like)
+            closest, steps = 0.0, repeat(flow, end, steps, how, work, zero)
         else:
-            near, taken = follow(flow, end, how, work, like)
+            near, taken = follow(flow, end, how, work, zero)
             closest, steps = min(closest, near), steps + taken if taken >= 0 else -1
         u = deviation_held(start, instant_at(body, end), work.start[U])
         if steps < 0:

@@ -79,9 +79,9 @@ def _yields_at(law: Any, work: Work, k: int, v: Any, radius: float) -> bool:
 
 
 @inner
-def _found_radius(law: Any, work: Work, k: int, like: Any) -> float:
+def _found_radius(law: Any, work: Work, k: int, zero: Any) -> float:
     """The radius that rates tell, the same at slips of any speed; 0 where they tell none."""
-    along = 1.0 + 0.0 * like
+    along = 1.0 + 0.0 * zero
     radius = _first_yield(law, work, k, along)
     # a surface that moves with the speed of slip is none
     for exponent in (-4.0, 2.0):
@@ -91,7 +91,7 @@ def _found_radius(law: Any, work: Work, k: int, like: Any) -> float:
     return radius
 
 
-def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, like: complex) -> bool:
+def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, zero: complex) -> bool:
     """Whether rates follow a slip that makes a deflection smaller or turns it, and not one that stretches it."""
     if law.elastic_unloading():
         return True
@@ -107,16 +107,16 @@ def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, like: complex) ->
 
 _found_unloaded = by_dimension(
     # on the line the corner is where slip reverses: the law's own rate is kept up to there
-    lambda law, work, k, like: False,
+    lambda law, work, k, zero: False,
     _found_unloaded_in_the_plane,
 )
 
 
-def _bristle_on_the_line(law: Any, work: Work, like: float) -> None:
+def _bristle_on_the_line(law: Any, work: Work, zero: float) -> None:
     work.radius[0], work.unloads[0] = law.yield_deflection(), 0.0
 
 
-def _bristle_in_the_plane(law: Any, work: Work, like: complex) -> None:
+def _bristle_in_the_plane(law: Any, work: Work, zero: complex) -> None:
     vectorial = law.form == VECTORIAL
     work.radius[0] = law.yield_deflection() if vectorial else math.inf
     work.unloads[0] = 1.0 if vectorial and law.elastic_unloading() else 0.0
@@ -125,23 +125,23 @@ def _bristle_in_the_plane(law: Any, work: Work, like: complex) -> None:
 _corners_of_bristle = by_dimension(_bristle_on_the_line, _bristle_in_the_plane)
 
 
-def _bristle(law: Any, work: Work, like: Any) -> None:
-    _corners_of_bristle(law, work, like)
+def _bristle(law: Any, work: Work, zero: Any) -> None:
+    _corners_of_bristle(law, work, zero)
     work.radius[0] = work.radius[0] if work.radius[0] < math.inf else 0.0
 
 
-def _deflections(law: Any, work: Work, like: Any) -> None:
+def _deflections(law: Any, work: Work, zero: Any) -> None:
     for k in range(count_of(law)):
-        work.memory[k] = 0.0 * like
+        work.memory[k] = 0.0 * zero
     for k in range(count_of(law)):
         radius = law.yield_deflection(k)
         work.radius[k], work.unloads[k] = radius if radius < math.inf else 0.0, 0.0
         # what remembers its mode has a breakaway in place of both
         if radius == math.inf and not law.remembers_stick():
-            work.radius[k] = 0.0 if law.elastic_unloading() else _found_radius(law, work, k, like)
+            work.radius[k] = 0.0 if law.elastic_unloading() else _found_radius(law, work, k, zero)
             if work.radius[k] == 0.0:
-                work.unloads[k] = 1.0 if _found_unloaded(law, work, k, like) else 0.0
-        work.memory[k] = 0.0 * like
+                work.unloads[k] = 1.0 if _found_unloaded(law, work, k, zero) else 0.0
+        work.memory[k] = 0.0 * zero
 
 
 measure_yield = by_law(
@@ -149,24 +149,24 @@ measure_yield = by_law(
     _bristle,
     _deflections,
     # a scalar has no direction in which to yield
-    lambda law, work, like: None,
+    lambda law, work, zero: None,
 )
-"""measure_yield(law, work, like): fill the radius of each yield surface, 0 for none, and ``unloads``: 1 for what has
+"""measure_yield(law, work, zero): fill the radius of each yield surface, 0 for none, and ``unloads``: 1 for what has
 none and follows the slip wherever that makes it smaller. On the line a reversal of slip serves for that."""
 
 
 _by_direction = by_dimension(
-    lambda law, like: np.zeros(law.count()), lambda law, like: np.zeros(law.count(), np.complex128)
+    lambda law, zero: np.zeros(law.count()), lambda law, zero: np.zeros(law.count(), np.complex128)
 )
 
-memory_of = by_scalars(lambda law, like: _by_direction(law, like), lambda law, like: np.zeros(law.count()))
-"""memory_of(law, like): an array for the memory of a law, at zero."""
+memory_of = by_scalars(lambda law, zero: _by_direction(law, zero), lambda law, zero: np.zeros(law.count()))
+"""memory_of(law, zero): an array for the memory of a law, at zero."""
 
 
 # --- scales ---------------------------------------------------------------------------------------------------------
 
 
-def _measure_bristle(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
+def _measure_bristle(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
     """The stiffness of the contact about the undeflected bristle."""
     size = law.largest_deflection()
     size = size if size < 1e300 else 1.0
@@ -180,9 +180,9 @@ shifted by as much as any other coordinate."""
 
 
 @inner
-def _effects(law: Any, body: BodyNumbers, work: Work, like: Any, least: float) -> None:
+def _effects(law: Any, body: BodyNumbers, work: Work, zero: Any, least: float) -> None:
     """Sizes in steady sliding as fast as the friction-free motion; into units, the slope of friction by each."""
-    v, n = swing_of(body) + 0.0 * like, count_of(law)
+    v, n = swing_of(body) + 0.0 * zero, count_of(law)
     for k in range(n):
         work.memory[k] = law.steady(v, k)
         work.moving[k] = 0.0 * work.memory[k]
@@ -201,14 +201,14 @@ def _effects(law: Any, body: BodyNumbers, work: Work, like: Any, least: float) -
         work.unit[k] = max(slope, least * most / work.size[k])
 
 
-def _measure_deflections(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
-    _effects(law, body, work, like, LEAST_EFFECT)
+def _measure_deflections(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
+    _effects(law, body, work, zero, LEAST_EFFECT)
     for k in range(count_of(law)):
         work.unit[k] = math.sqrt(body.normal_load * work.unit[k])
 
 
-def _measure_scalars(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
-    _effects(law, body, work, like, LEAST_OF_SCALARS)
+def _measure_scalars(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
+    _effects(law, body, work, zero, LEAST_OF_SCALARS)
     for k in range(count_of(law)):
         work.unit[k] = body.normal_load * work.unit[k] * work.size[k] / body.frequency
         here = work.memory[k]
@@ -222,19 +222,19 @@ _measure_sizes = by_law(_measure_bristle, _measure_bristle, _measure_deflections
 
 
 @inner
-def measure_scales(law: Any, body: BodyNumbers, work: Work, like: Any) -> None:
+def measure_scales(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
     """Fill of each number its size in steady sliding, its unit in the norm of energy and where it yields."""
-    _measure_sizes(law, body, work, like)
-    measure_yield(law, work, like)
+    _measure_sizes(law, body, work, zero)
+    measure_yield(law, work, zero)
 
 
 # --- into a state and out of it -------------------------------------------------------------------------------------
 
 coordinates = by_scalars(
-    lambda law, like: count_of(law) * (dimension(like) + (1 if remembers_stick(law) else 0)),
-    lambda law, like: count_of(law),
+    lambda law, zero: count_of(law) * (dimension(zero) + (1 if remembers_stick(law) else 0)),
+    lambda law, zero: count_of(law),
 )
-"""coordinates(law, like): how many numbers of a state hold the memory."""
+"""coordinates(law, zero): how many numbers of a state hold the memory."""
 
 
 @inner
@@ -243,8 +243,8 @@ def _unit_of_stick(body: BodyNumbers) -> float:
     return 1.0 + swing_of(body) + body.normal_load
 
 
-def _pack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
-    d, n = dimension(like), count_of(law)
+def _pack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, zero: Any) -> None:
+    d, n = dimension(zero), count_of(law)
     for k in range(n):
         put(state, 2 + k, work.unit[k] * work.start[MEMORY + k])
         if remembers_stick(law):
@@ -252,15 +252,15 @@ def _pack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, like:
             state[(2 + n) * d + k] = slips * _unit_of_stick(body)
 
 
-def _pack_scalars(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
-    first = 2 * dimension(like)
+def _pack_scalars(law: Any, body: BodyNumbers, work: Work, state: Any, zero: Any) -> None:
+    first = 2 * dimension(zero)
     for k in range(count_of(law)):
         value = as_memory(law, work.start[MEMORY + k])
         state[first + k] = work.unit[k] * scalar_coordinate(value / work.size[k], work.positive[k])
 
 
 pack_memory = by_scalars(_pack_deflections, _pack_scalars)
-"""pack_memory(law, body, work, state, like): write the memory at ``work.start`` into a state."""
+"""pack_memory(law, body, work, state, zero): write the memory at ``work.start`` into a state."""
 
 
 @inner
@@ -279,24 +279,24 @@ def scalar_share(coordinate: float, positive: float) -> float:
     return math.exp(coordinate) if coordinate < 0.0 else 1.0 + coordinate
 
 
-def _unpack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
-    d, n = dimension(like), count_of(law)
+def _unpack_deflections(law: Any, body: BodyNumbers, work: Work, state: Any, zero: Any) -> None:
+    d, n = dimension(zero), count_of(law)
     for k in range(n):
-        work.start[MEMORY + k] = taken(state, 2 + k, like) / work.unit[k]
+        work.start[MEMORY + k] = taken(state, 2 + k, zero) / work.unit[k]
         if remembers_stick(law):
             slips = state[(2 + n) * d + k] > 0.5 * _unit_of_stick(body)
             work.mode[k] = YIELDS if slips else FOLLOWS
 
 
-def _unpack_scalars(law: Any, body: BodyNumbers, work: Work, state: Any, like: Any) -> None:
-    first = 2 * dimension(like)
+def _unpack_scalars(law: Any, body: BodyNumbers, work: Work, state: Any, zero: Any) -> None:
+    first = 2 * dimension(zero)
     for k in range(count_of(law)):
         share = scalar_share(state[first + k] / work.unit[k], work.positive[k])
-        work.start[MEMORY + k] = work.size[k] * share + 0.0 * like
+        work.start[MEMORY + k] = work.size[k] * share + 0.0 * zero
 
 
 unpack_memory = by_scalars(_unpack_deflections, _unpack_scalars)
-"""unpack_memory(law, body, work, state, like): read the memory of a state into ``work.start``."""
+"""unpack_memory(law, body, work, state, zero): read the memory of a state into ``work.start``."""
 
 
 # --- the set of memories that slip leads to -------------------------------------------------------------------------

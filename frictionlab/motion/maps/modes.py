@@ -139,11 +139,11 @@ def lowest(flow: Flow, w: Any, a: Any, work: Work) -> Guard:
 
 
 @inner
-def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
+def rates_at_end(flow: Flow, tau: float, work: Work, zero: Any) -> Any:
     """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
     for row in range(rows_of(flow)):
         work.stage[row] = work.end[row]
-    return fill_rates(flow, instant_near(flow, tau), work, like)
+    return fill_rates(flow, instant_near(flow, tau), work, zero)
 
 
 def _begin_smoothly(flow: Flow, a: Any, w: Any, work: Work) -> None:
@@ -196,7 +196,7 @@ def restore(flow: Flow, work: Work) -> None:
 
 
 @inner
-def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, like: Any) -> float:
+def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, zero: Any) -> float:
     """The step to the first guard that passes zero within a step of ``high``, just beyond it; left in ``work.end``.
 
     Newton's method on the lowest guard, kept between a step that no guard ends and one that a guard does.
@@ -204,7 +204,7 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, lik
     low, h, within = 0.0, high, CLOSE * accuracy
     for turn in range(60):
         # a step was taken to h: on which side of the event does it end?
-        w, a = rates_at_end(flow, tau + h, work, like)
+        w, a = rates_at_end(flow, tau + h, work, zero)
         guard = lowest(flow, w, a, work)
         if guard.value <= 0.0:
             high = h
@@ -217,10 +217,10 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, lik
         trial = h - (guard.value + 0.5 * within) / guard.rate if guard.rate < 0.0 else low
         # on a bend Newton's steps may creep towards one end: halve now and then
         h = trial if low < trial < high and turn % 4 < 3 else 0.5 * (low + high)
-        step(flow, tau, h, work, like)
+        step(flow, tau, h, work, zero)
     # the last step tried need not be the one that ends just beyond
     if h != high:
-        step(flow, tau, high, work, like)
+        step(flow, tau, high, work, zero)
     return high
 
 

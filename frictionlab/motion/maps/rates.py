@@ -73,8 +73,8 @@ class Work(NamedTuple):
     share: Any  # [3] there: the normal load over its mean, and its first and second derivative
 
 
-kind_of_memory = by_scalars(lambda law, like: like, lambda law, like: 0.0)
-"""kind_of_memory(law, like): a number of the kind that the law remembers; like: of the kind of a slip."""
+kind_of_memory = by_scalars(lambda law, zero: zero, lambda law, zero: 0.0)
+"""kind_of_memory(law, zero): zero of the kind that the law remembers; zero: one of the kind of a slip."""
 
 as_memory = by_scalars(lambda law, value: value, lambda law, value: value.real)
 """as_memory(law, value): a number of a state as the law sees it."""
@@ -84,24 +84,24 @@ contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
 
 
 @inlined
-def workspace(law: Any, like: Any, contact: Any) -> Work:
+def workspace(law: Any, zero: Any, contact: Any) -> Work:
     """Room on the caller's stack, at zero: it lives as long as the caller; contact: that of the body.
 
     There is room for eight springs that relax.
     """
     return Work(
-        start=room(law, 1, 11, like),
-        end=room(law, 1, 11, like),
-        stage=room(law, 1, 11, like),
-        rates=room(law, 1, 11, like),
-        slope=room(law, 1, 11, like),
-        increments=room(law, 8, 88, like),
-        bends=room(law, 3, 33, like),
-        memory=room(law, 1, 0, kind_of_memory(law, like)),
-        moving=room(law, 1, 0, kind_of_memory(law, like)),
-        jacobian=room(law, 6, 2, like),
-        factors=room(law, 4, 4, like),
-        columns=room(law, 3, 5, like),
+        start=room(law, 1, 11, zero),
+        end=room(law, 1, 11, zero),
+        stage=room(law, 1, 11, zero),
+        rates=room(law, 1, 11, zero),
+        slope=room(law, 1, 11, zero),
+        increments=room(law, 8, 88, zero),
+        bends=room(law, 3, 33, zero),
+        memory=room(law, 1, 0, kind_of_memory(law, zero)),
+        moving=room(law, 1, 0, kind_of_memory(law, zero)),
+        jacobian=room(law, 6, 2, zero),
+        factors=room(law, 4, 4, zero),
+        columns=room(law, 3, 5, zero),
         guards=room(law, 2, 2, 0.0),
         unit=room(law, 1, 0, 0.0),
         size=room(law, 1, 0, 0.0),
@@ -254,7 +254,7 @@ def load_on(body: BodyNumbers, now: Instant) -> float:
 
 
 @fast
-def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
+def fill_rates(flow: Flow, now: Instant, work: Work, zero: Any) -> Any:
     """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
     body, n = flow.body, count_of(flow.law)
     note_share(work, body, now)
@@ -265,11 +265,11 @@ def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     # friction first: it may depend on the rates of what is remembered
     friction = friction_in_mode(flow.law, work, w)
     a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
-    a = a - along_x1(relaxing_force(body, work.stage, MEMORY + n), like)
+    a = a - along_x1(relaxing_force(body, work.stage, MEMORY + n), zero)
     for k in range(elements_of(body)):
-        work.rates[MEMORY + n + k] = relaxing_rate(body, k, work.stage[MEMORY + n + k], u) + 0.0 * like
+        work.rates[MEMORY + n + k] = relaxing_rate(body, k, work.stage[MEMORY + n + k], u) + 0.0 * zero
     work.rates[Y], work.rates[U] = u, rate_held(flow, now, a)
     work.rates[IMPULSE] = load_share(body, now) * friction
     for k in range(n):
-        work.rates[MEMORY + k] = work.moving[k] - stretching(work, work.memory[k]) + 0.0 * like
+        work.rates[MEMORY + k] = work.moving[k] - stretching(work, work.memory[k]) + 0.0 * zero
     return w, deviation_slip_rate(flow, now, a)

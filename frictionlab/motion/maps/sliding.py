@@ -393,7 +393,7 @@ def _sliding_piece(
     case: Case, tau: float, end: float, image: Mapped, accuracy: float, track: Track
 ) -> Mapped:
     """From one corner of what changes in time to the next; image: the state at the first, and what was met so far."""
-    law, belt_speed, like = case.law, case.belt_speed, case.like
+    law, belt_speed, zero = case.law, case.belt_speed, case.zero
     y, u, friction_impulse, stuck, closest, released, steps, forces = image
     body = carrying(in_one_number(case.body), forces, tau)
     # the side of the first slip; a slip within the accuracy of zero is rest
@@ -407,7 +407,7 @@ def _sliding_piece(
         if resting:
             # at rest: until the belt has carried the mass to where friction no longer holds it
             x = state.x + reference_position(body, tau)
-            rest = stick_phase(Case(law, body, belt_speed, like), tau, x, accuracy, end)
+            rest = stick_phase(Case(law, body, belt_speed, zero), tau, x, accuracy, end)
             if track.stick.size > 0:
                 _note_rest(track, problem, tau, x, rest)
             friction_impulse, stuck = friction_impulse + rest.friction_impulse, stuck + rest.stuck

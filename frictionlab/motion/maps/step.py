@@ -60,32 +60,32 @@ _yielded = by_relaxing(lambda body, h: 0.0, _yielded_by_springs)
 
 
 @fast
-def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
+def factor(flow: Flow, h: float, work: Work, zero: Any) -> None:
     """Fill ``work.factors`` for a step of h from ``work.jacobian``.
 
     No pivots: a block that is singular to rounding makes an error that is not finite, and the step is repeated.
     """
     body, n, diagonally, beside = flow.body, count_of(flow.law), 1.0 / (GAMMA * h), springs_at(flow, work)
     # friction by slip: at once, and through every deflection that slip moves within the step
-    by_slip = block(work.jacobian, 3 * n, like)
+    by_slip = block(work.jacobian, 3 * n, zero)
     for k in range(n):
-        own = scale(-1.0, block(work.jacobian, 3 * k + 1, like), like)
-        alone = inverse(add(diagonal(diagonally, 0.0, like), own, like), like)
-        moved = product(alone, block(work.jacobian, 3 * k, like), like)
-        by_slip = add(by_slip, product(block(work.jacobian, 3 * k + 2, like), moved, like), like)
-        keep(work.factors, 2 * k, alone, like)
-        keep(work.factors, 2 * k + 1, moved, like)
+        own = scale(-1.0, block(work.jacobian, 3 * k + 1, zero), zero)
+        alone = inverse(add(diagonal(diagonally, 0.0, zero), own, zero), zero)
+        moved = product(alone, block(work.jacobian, 3 * k, zero), zero)
+        by_slip = add(by_slip, product(block(work.jacobian, 3 * k + 2, zero), moved, zero), zero)
+        keep(work.factors, 2 * k, alone, zero)
+        keep(work.factors, 2 * k + 1, moved, zero)
     # the mass, with its springs at the end of the step: y' = u makes them gamma h K in the block of u
     half = 0.5 * _yielded(body, h)
     mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean + half
-    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split + half, like)
+    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split + half, zero)
     keep(
         work.factors,
         2 * n,
-        inverse(add(mass, scale(load_on(body, instant_near(flow, flow.anchor)), by_slip, like), like), like),
-        like,
+        inverse(add(mass, scale(load_on(body, instant_near(flow, flow.anchor)), by_slip, zero), zero), zero),
+        zero,
     )
-    keep(work.factors, 2 * n + 1, by_slip, like)
+    keep(work.factors, 2 * n + 1, by_slip, zero)
 
 
 _stretched = by_dimension(
@@ -146,36 +146,36 @@ _stretch = by_relaxing(lambda flow, i, h, u, work: None, _stretched_springs)
 
 
 @fast
-def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
+def _solve(i: int, flow: Flow, h: float, work: Work, zero: Any) -> None:
     """The increments of stage i from its right-hand sides in ``work.rates``."""
     n, body = count_of(flow.law), flow.body
     first = rows_of(flow) * i
     # each number with the velocity kept, then the mass, then what its change of velocity adds to each number
-    alone = 0.0 * like  # friction of what the deflections would do if the mass kept its velocity
+    alone = 0.0 * zero  # friction of what the deflections would do if the mass kept its velocity
     for k in range(n):
-        moved = apply(block(work.factors, 2 * k, like), work.rates[MEMORY + k])
+        moved = apply(block(work.factors, 2 * k, zero), work.rates[MEMORY + k])
         work.increments[first + MEMORY + k] = moved
-        alone = alone + apply(block(work.jacobian, 3 * k + 2, like), moved)
+        alone = alone + apply(block(work.jacobian, 3 * k + 2, zero), moved)
     right = (
         work.rates[U]
-        - along_x1(_relaxed(flow, i, h, work), like)
+        - along_x1(_relaxed(flow, i, h, work), zero)
         - GAMMA * h * _stretched(springs_at(flow, work), work.rates[Y])
         - load_on(body, instant_near(flow, flow.anchor)) * alone
     )
-    u = apply(block(work.factors, 2 * n, like), right)
+    u = apply(block(work.factors, 2 * n, zero), right)
     work.increments[first + Y] = GAMMA * h * (work.rates[Y] + u)
     work.increments[first + U] = u
     for k in range(n):
-        moved = apply(block(work.factors, 2 * k + 1, like), u)
+        moved = apply(block(work.factors, 2 * k + 1, zero), u)
         work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
     _stretch(flow, i, h, u, work)
     if creeps(flow.law, work):
         held = restoring_force(springs_at(flow, work), work.increments[first + Y], u)
-        held = held + along_x1(relaxing_force(body, work.increments, first + MEMORY + n), like)
+        held = held + along_x1(relaxing_force(body, work.increments, first + MEMORY + n), zero)
         rubs = -held / body.normal_load
     else:
         share = load_share(body, instant_near(flow, flow.anchor))
-        rubs = share * (alone + apply(block(work.factors, 2 * n + 1, like), u))
+        rubs = share * (alone + apply(block(work.factors, 2 * n + 1, zero), u))
     work.increments[first + IMPULSE] = GAMMA * h * (work.rates[IMPULSE] + rubs)
 
 
@@ -203,21 +203,21 @@ _within = by_scalars(lambda flow, work: True, _scalars_within)
 """_within(flow, work): whether the law has a rate at ``work.stage``; the age of a contact is never negative."""
 
 
-def _unit_of_impulse(flow: Flow, k: int, work: Work, like: Any) -> float:
+def _unit_of_impulse(flow: Flow, k: int, work: Work, zero: Any) -> float:
     """What a scalar changes in friction, for a radian; or as a state is measured by it, about its own size."""
-    effect = length(apply(block(work.jacobian, 3 * k + 2, like), 1.0 + 0.0 * like))
+    effect = length(apply(block(work.jacobian, 3 * k + 2, zero), 1.0 + 0.0 * zero))
     here = length(work.start[MEMORY + k])
     return max(
         effect * flow.body.normal_load / flow.body.frequency, LITTLE * work.unit[k] / max(here, work.size[k])
     )
 
 
-_unit = by_scalars(lambda flow, k, work, like: work.unit[k], _unit_of_impulse)
-"""_unit(flow, k, work, like): what the error of a number is multiplied by."""
+_unit = by_scalars(lambda flow, k, work, zero: work.unit[k], _unit_of_impulse)
+"""_unit(flow, k, work, zero): what the error of a number is multiplied by."""
 
 
 @inner
-def _error(flow: Flow, work: Work, like: Any) -> float:
+def _error(flow: Flow, work: Work, zero: Any) -> float:
     """The difference to the embedded method of order 4 in the norm of energy, the impulse's too."""
     n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
     last = rows_of(flow) * (STAGES - 1)
@@ -226,20 +226,20 @@ def _error(flow: Flow, work: Work, like: Any) -> float:
     error += velocity * velocity
     error += square(body.normal_load * work.increments[last + IMPULSE])
     for k in range(n):
-        error += square(_unit(flow, k, work, like) * work.increments[last + MEMORY + k])
+        error += square(_unit(flow, k, work, zero) * work.increments[last + MEMORY + k])
     for k in range(m):
         error += square(energy_unit(body, k) * work.increments[last + MEMORY + n + k])
     return math.sqrt(error)
 
 
 @inner
-def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
+def step(flow: Flow, tau: float, h: float, work: Work, zero: Any) -> float:
     """One step from ``work.start`` to ``work.end``; returns its error in the norm of energy, the impulse's too.
 
     It starts at the anchor of the flow. The error is infinite where a scalar has left its set on the way.
     """
     size = rows_of(flow)
-    factor(flow, h, work, like)
+    factor(flow, h, work, zero)
     now, taken = instant_near(flow, tau), work.start[U]
     for i in range(STAGES):
         # stages 6 to 8 are all at the end of the step: its sine and cosine serve them
@@ -250,12 +250,12 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
         work.stage[U] = velocity_told(flow.law, work, taken)
         if 0 < i < SIMULTANEOUS:
             now = instant_near(flow, tau + TIMES[i] * h)
-        fill_rates(flow, now, work, like)
+        fill_rates(flow, now, work, zero)
         if creeps(flow.law, work):
             work.rates[IMPULSE] = work.rates[IMPULSE] + work.rates[U] / flow.body.normal_load
         work.rates[U] = rate_taken(flow.law, work, work.stage[U], work.rates[U])
         _right_side(i, flow, h, work)
-        _solve(i, flow, h, work, like)
+        _solve(i, flow, h, work, zero)
     # the last increment is the difference to the embedded method, and ends the step
     last = size * (STAGES - 1)
     for row in range(size):
@@ -263,7 +263,7 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
     work.end[U] = velocity_told(flow.law, work, taken + work.increments[last + U])
     if creeps(flow.law, work):
         work.end[IMPULSE] = work.end[IMPULSE] - (work.end[U] - work.start[U]) / flow.body.normal_load
-    return _error(flow, work, like)
+    return _error(flow, work, zero)
 
 
 @inner

@@ -198,10 +198,10 @@ unit_of_scalars = by_scalars(lambda law, body, zero: 1e300, _smallest_unit)
 # --- the map --------------------------------------------------------------------------------------------------------
 
 
-def _image_without_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+def _image_without_memory(case: Case, state: Any, residual: Any, stepping: Stepping) -> Mapped:
     """Its steps are not kept."""
     y, u = unpack(case.body, state, case.zero)
-    image = sliding_map(case, y, u, read_forces(case.body, state), how.accuracy, how.track)
+    image = sliding_map(case, y, u, read_forces(case.body, state), stepping.accuracy, stepping.track)
     pack(case.body, residual, image.y - y, image.u - u)
     write_forces(case.body, residual, image.forces)
     for row in range(residual.size - elements_of(case.body), residual.size):
@@ -209,7 +209,7 @@ def _image_without_memory(case: Case, state: Any, residual: Any, how: Stepping) 
     return image
 
 
-def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+def _image_with_memory(case: Case, state: Any, residual: Any, stepping: Stepping) -> Mapped:
     law, body, zero = case.law, case.body, case.zero
     y, u = unpack(body, state, zero)
     work = workspace(law, zero, contact_kind(body))
@@ -217,7 +217,7 @@ def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> 
     unpack_memory(law, body, work, state, zero)
     unpack_forces(body, state, work.start, MEMORY + count_of(law))
     cut_back(law, work)
-    image = memory_map(case, y, u, work, how)
+    image = memory_map(case, y, u, work, stepping)
     pack(body, residual, image.y - y, image.u - u)
     pack_memory(law, body, work, residual, zero)
     pack_forces(body, residual, work.start, MEMORY + count_of(law))
@@ -227,7 +227,7 @@ def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> 
 
 
 @inner
-def image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+def image_by_path(case: Case, state: Any, residual: Any, stepping: Stepping) -> Mapped:
     """``paced_image`` of a bristle on the line whose deflection the path of the slip tells."""
     law, body, zero = case.law, case.body, case.zero
     y, u = unpack(body, state, zero)
@@ -235,14 +235,14 @@ def image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mappe
     measure_scales(law, body, work, zero)
     unpack_memory(law, body, work, state, zero)
     z = work.start[MEMORY]
-    image = path_map(case, y, u, z, how)
+    image = path_map(case, y, u, z, stepping)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
     return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps, 0.0)
 
 
 paced_image = by_law(_image_without_memory, _image_with_memory, _image_with_memory)
-"""paced_image(case, state, residual, how): one span from a state, noted on a track with room, its steps kept or
+"""paced_image(case, state, residual, stepping): one span from a state, noted on a track with room, its steps kept or
 repeated; leaves image - state in residual.
 
 steps is -1 where it gave up, or where the events of this state are not those of the steps repeated."""

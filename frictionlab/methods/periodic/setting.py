@@ -158,10 +158,10 @@ def _over(body: BodyNumbers, periods: float) -> BodyNumbers:
 def _followed_by(image_of_state: Any) -> Any:
     @inner
     def follow(
-        on: LawOnBody, belt_speed: float, periods: float, state: Any, residual: Any, how: Stepping
+        on: LawOnBody, belt_speed: float, periods: float, state: Any, residual: Any, stepping: Stepping
     ) -> SpanImage:
         case = case_of(on.law, _over(on.body, periods), belt_speed)
-        image = image_of_state(case, state, residual, how)
+        image = image_of_state(case, state, residual, stepping)
         impulse = image.friction_impulse + 0j
         return SpanImage(impulse, image.stuck, image.closest, image.released, image.steps)
 
@@ -292,13 +292,15 @@ def scales_of(setting: Setting) -> Scales:
 
 
 @inner
-def paced_map(setting: Setting, state: Any, residual: Any, how: Stepping) -> SpanImage:
+def paced_map(setting: Setting, state: Any, residual: Any, stepping: Stepping) -> SpanImage:
     """One span from a state; leaves image - state in residual. Steps of laws without memory are not kept.
 
     steps is -1 where it gave up, or where the events of this state are not those of the steps that it repeats.
     """
     maps = setting.maps
-    return _follow_at(maps.follow, maps.place, (setting.belt_speed, setting.periods, state, residual, how))
+    return _follow_at(
+        maps.follow, maps.place, (setting.belt_speed, setting.periods, state, residual, stepping)
+    )
 
 
 @inner

@@ -239,14 +239,14 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, zero: Any) -> float:
 
 
 @inner
-def follow(flow: Flow, end: float, how: Stepping, work: Work, zero: Any) -> Any:
+def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) -> Any:
     """The motion from ``work.start``, and back into it, until ``end``, all between two corners of what changes in
     time; returns the smallest slip speed and the steps.
 
     Steps are -1 where it gave up.
     """
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
-    accuracy, track, pace = how.accuracy, how.track, how.pace
+    accuracy, track, pace = stepping.accuracy, stepping.track, stepping.pace
     friction = usual_friction(law, body)
     longest = longest_step(body, friction, accuracy)
     began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
@@ -289,7 +289,7 @@ def follow(flow: Flow, end: float, how: Stepping, work: Work, zero: Any) -> Any:
 
 
 @inner
-def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, zero: Any) -> int:
+def repeat(flow: Flow, end: float, first: int, stepping: Stepping, work: Work, zero: Any) -> int:
     """The motion from ``work.start``, and back into it, until ``end`` by the steps of another motion close by.
 
     first: the number of the first of them. Steps end at the events of their own motion: the numbers at the end are
@@ -297,7 +297,7 @@ def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, zero: 
     are not those of the other motion.
     """
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
-    pace, within = how.pace, min(how.accuracy, OF_EVENTS)
+    pace, within = stepping.pace, min(stepping.accuracy, OF_EVENTS)
     last, tau = pace.taken[0] - 1, flow.anchor
     _depart(flow, True, work, zero)
     for k in range(first, last + 1):
@@ -346,7 +346,7 @@ def _share_at(case: Case, k: int, tau: float) -> float:
 
 
 @inner
-def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
+def memory_map(case: Case, y: Any, u: Any, work: Work, stepping: Stepping) -> Mapped:
     """One span from the deviation (y, u) and the memory at ``work.start``, which becomes that at its end.
 
     Where it repeats kept steps it gives up where they do not fit.
@@ -355,8 +355,10 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
     free = 0.0 if body.prescribed else 1.0  # the reference is the motion
     work.start[Y] = free * y
     work.start[IMPULSE] = 0.0 * zero
-    how = Stepping(min(how.accuracy, coarsest(law, body)), how.track, how.pace, how.repeats)
-    work.creep[SLOW] = free * BELOW * how.accuracy
+    stepping = Stepping(
+        min(stepping.accuracy, coarsest(law, body)), stepping.track, stepping.pace, stepping.repeats
+    )
+    work.creep[SLOW] = free * BELOW * stepping.accuracy
     u, closest, steps = free * u, OPEN, 0
     for k in range(pieces_of(body)):
         here, (tau, end) = case_in_piece(case, k), piece_ends(body, k)
@@ -364,10 +366,10 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
         start = anchored(law, here.body, case.belt_speed, 1.0, tau)
         work.start[U] = held_velocity(start, instant_at(body, tau), u)
         flow = _flow_of(here, tau, work)
-        if how.repeats:
-            closest, steps = 0.0, repeat(flow, end, steps, how, work, zero)
+        if stepping.repeats:
+            closest, steps = 0.0, repeat(flow, end, steps, stepping, work, zero)
         else:
-            near, taken = follow(flow, end, how, work, zero)
+            near, taken = follow(flow, end, stepping, work, zero)
             closest, steps = min(closest, near), steps + taken if taken >= 0 else -1
         u = deviation_held(start, instant_at(body, end), work.start[U])
         if steps < 0:

@@ -321,7 +321,7 @@ def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pa
 
 
 @inner
-def path_map(case: Case, y: float, u: float, z: float, how: Stepping) -> Carried:
+def path_map(case: Case, y: float, u: float, z: float, stepping: Stepping) -> Carried:
     """One span from the deviation (y, u) and deflection z at tau = 0.
 
     By the steps of another motion close by it gives up where the events are not those of that one. Steps end at the
@@ -330,19 +330,19 @@ def path_map(case: Case, y: float, u: float, z: float, how: Stepping) -> Carried
     image = Carried(y, u, z, 0.0, 1e300, 0)
     for k in range(pieces_of(case.body)):
         here, (tau, end) = case_in_piece(case, k), piece_ends(case.body, k)
-        if how.repeats:
-            image = _repeated_piece(here, tau, end, image, how.pace)
+        if stepping.repeats:
+            image = _repeated_piece(here, tau, end, image, stepping.pace)
         else:
-            image = _path_piece(here, tau, end, image, how)
+            image = _path_piece(here, tau, end, image, stepping)
         if image.steps < 0:
             break
     return image
 
 
 @inner
-def _path_piece(case: Case, tau: float, end: float, image: Carried, how: Stepping) -> Carried:
+def _path_piece(case: Case, tau: float, end: float, image: Carried, stepping: Stepping) -> Carried:
     """Between two corners of what changes in time; image: the state at the first, and what was met so far."""
-    law, body, accuracy = case.law, case.body, how.accuracy
+    law, body, accuracy = case.law, case.body, stepping.accuracy
     longest = longest_step(body, law.sliding_friction(0.0), accuracy)
     share = share_of_the_way(law, body, accuracy)
     y, u, z, friction_impulse, closest, steps = image
@@ -364,9 +364,9 @@ def _path_piece(case: Case, tau: float, end: float, image: Carried, how: Steppin
             continue
         # a step to the end goes there whenever it is repeated
         last = ending.verdict == ACCEPT and end - tau <= h
-        keep_step(how.pace, 1e300 if last else tried, ending.verdict)
-        if how.track.stick.size > 0:
-            _note_slip(how.track, tau, h, False, leg, tau, dense(leg, tau, state, h))
+        keep_step(stepping.pace, 1e300 if last else tried, ending.verdict)
+        if stepping.track.stick.size > 0:
+            _note_slip(stepping.track, tau, h, False, leg, tau, dense(leg, tau, state, h))
         friction_impulse = friction_impulse + ending.taken.friction_impulse
         node = _next_node(case, node, ending, tau + h if end - tau > h else end)
         h = h * growth if ending.verdict != TURN else longest

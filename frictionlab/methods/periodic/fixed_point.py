@@ -18,8 +18,8 @@ from frictionlab.methods.periodic.setting import (
     Scales,
     Setting,
     SpanImage,
-    grain_of_mean,
     guess_inverse,
+    hidden_error_of_mean,
     kept_map,
     period_map,
     scales_of,
@@ -325,7 +325,7 @@ def _corrected(setting: Setting, search: Iterate, last: PacedMap, floor: float, 
     share = setting.maps.orders.share if finer < 0.5 * accuracy else 1.0
     # once, not twice: this map comes after two that agreed
     changed = 0.5 * (mean_change(scales, image, better) + share * before)
-    steps = floor / scales.normal_load + grain_of_mean(setting, finer)
+    steps = floor / scales.normal_load + hidden_error_of_mean(setting, finer)
     return better, stated_error(changed, abs(left), steps), took + 1
 
 
@@ -360,7 +360,7 @@ def _check_with_memory(
     )
     multiply(search.inverse, residual, step)
     rest = slope * norm(step) + SURE * mean_error(scales, residual, norm(step))
-    steps = floor / scales.normal_load + grain_of_mean(setting, accuracy)
+    steps = floor / scales.normal_load + hidden_error_of_mean(setting, accuracy)
     # once, not twice: the maps compared are many times finer than the search's
     error = stated_error(0.5 * doubt, rest, steps)
     # The second map, from where the first says the orbit is, must be much nearer to closing, or within its own error.

@@ -164,12 +164,12 @@ coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
 
 
-def _no_grain(law: Any, body: BodyNumbers, zero: Any) -> Any:
+def _nothing_hidden(law: Any, body: BodyNumbers, zero: Any) -> Any:
     return 0.0, 0.0
 
 
-def _grain_of_memory(law: Any, body: BodyNumbers, zero: Any) -> Any:
-    """A yield within a step, or the sum of all steps' errors."""
+def _hidden_error_of_memory(law: Any, body: BodyNumbers, zero: Any) -> Any:
+    """Return the error of a yield within a step, and that of the sum of the errors of all steps."""
     work, most = workspace(law, zero, contact_kind(body)), 0.0
     measure_scales(law, body, work, zero)
     if law.turning > 0.0:
@@ -178,9 +178,9 @@ def _grain_of_memory(law: Any, body: BodyNumbers, zero: Any) -> Any:
     return 2.0 * most, 10.0
 
 
-grain_of = by_law(_no_grain, _no_grain, _grain_of_memory)
-"""grain_of(law, body, zero): what the steps of a map leave in the mean even if two maps agree, per accuracy over the
-normal load: so much always, and so much over the span."""
+hidden_error_of = by_law(_nothing_hidden, _nothing_hidden, _hidden_error_of_memory)
+"""hidden_error_of(law, body, zero): error of the mean that comparing two maps cannot reveal, per accuracy over the
+normal load: a constant part, and a part that is divided by the span."""
 
 
 def _smallest_unit(law: Any, body: BodyNumbers, zero: Any) -> float:

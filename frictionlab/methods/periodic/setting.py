@@ -30,7 +30,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
 from frictionlab.methods.periodic.period_map import (
     coarsest_of,
-    grain_of,
+    hidden_error_of,
     image_by_path,
     map_kind,
     paced_image,
@@ -114,10 +114,8 @@ class Maps(NamedTuple):
     swing: float  # speed of the friction-free motion
     orders: Orders
     coarsest: float  # accuracy that a map is made with, whatever is asked
-    grain: (
-        float  # what the steps of a map leave in the mean even if two maps agree, per accuracy: always this,
-    )
-    grain_per_time: float  # and this over the span
+    hidden_error: float  # of the mean, that comparing two maps cannot reveal, per accuracy: constant part
+    hidden_error_per_time: float  # and the part that is divided by the span
 
 
 class Setting(NamedTuple):
@@ -253,7 +251,7 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
         zero = case_of(law, body, 0.0).zero
         room = np.empty(bytes_of(on), np.uint8)
         at = addresses(on)
-        grain, per_time = grain_of(law, on.body, zero)
+        hidden_error, per_time = hidden_error_of(law, on.body, zero)
         scales = scales_on(_over(body, 1.0))
         remembers = _has_memory(law)
         scalars = Scalars(2 * dimension(zero), size_of(law, zero), unit_of_scalars(law, on.body, zero))
@@ -261,7 +259,7 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
             written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
             whole_size_of(law, body, zero), scalars, remembers, dimension(zero) == 2, scales, swing_of(on.body),
             of_memory if remembers else of_sliding,
-            coarsest_of(law, on.body), grain, per_time,
+            coarsest_of(law, on.body), hidden_error, per_time,
         )  # fmt: skip
 
     return maps_of
@@ -378,7 +376,7 @@ def guess_inverse(setting: Setting, rubbing: float, inverse: Any) -> None:
 
 
 @inner
-def grain_of_mean(setting: Setting, accuracy: float) -> float:
-    """What the steps of a map leave in the mean even if two maps agree."""
+def hidden_error_of_mean(setting: Setting, accuracy: float) -> float:
+    """Return the error of the mean that comparing two maps of this accuracy cannot reveal."""
     maps, scales = setting.maps, scales_of(setting)
-    return accuracy / scales.normal_load * (maps.grain + maps.grain_per_time / scales.period)
+    return accuracy / scales.normal_load * (maps.hidden_error + maps.hidden_error_per_time / scales.period)

@@ -79,10 +79,12 @@ _spent: dict[Any, float] = {}
 """Processor time [s] that Python has spent on each of the others in this process."""
 
 
-class Held:
-    """An argument that another kernel makes: by machine code for machine code, by Python for Python.
+class MadeByKernel:
+    """Argument that another kernel makes on first use, once by machine code and once by Python.
 
-    The kernel returns what has to live as long as the argument, and the argument.
+    So kernels are handed the table of maps of a law on a body: compiled kernels a table of machine code, kernels that
+    Python runs a table of Python functions. The kernel returns a pair: what has to live as long as the argument, and
+    the argument.
     """
 
     def __init__(self, kernel: Any, law: FrictionLaw, *arguments: Any) -> None:
@@ -99,21 +101,21 @@ class Held:
 
     @property
     def for_machine(self) -> Any:
-        """The argument of machine code."""
+        """Argument for machine code."""
         return self._made_by_machine[1][1]
 
     @property
     def for_python(self) -> Any:
-        """The argument of a kernel that Python runs."""
+        """Argument for a kernel that Python runs."""
         return self._made_by_python[1]
 
     @cached_property
     def kind(self) -> Any:
-        """What tells it from arguments of other types."""
+        """Key that differs between arguments of different types."""
         return self._call.key(self._arguments)
 
     def not_kept(self) -> frozenset[str]:
-        """The kernels that have to be compiled for it."""
+        """Name the kernels that have to be compiled to make it."""
         return self._call.not_kept(self._arguments)
 
 
@@ -162,16 +164,16 @@ class KernelCall:
     def not_kept(self, arguments: tuple[Any, ...]) -> frozenset[str]:
         """The names of the entries to compile for arguments like these: no machine code is in memory or on disk."""
         entry = compiled(self.kernel, self.law and without_addresses(self.law))
-        held = [each for each in arguments if isinstance(each, Held)]
+        made = [each for each in arguments if isinstance(each, MadeByKernel)]
         # a kernel that others make arguments of is compiled once, whatever they make
-        kept = entry.is_kept_at_all() if held else entry.is_kept(*arguments)
+        kept = entry.is_kept_at_all() if made else entry.is_kept(*arguments)
         # the methods of a law that it calls take less to compile than Python takes to be run
         own = frozenset[str]() if kept else frozenset({str(entry.entry.__module__)})
-        return own.union(*(each.not_kept() for each in held))
+        return own.union(*(each.not_kept() for each in made))
 
     def by_python(self, *arguments: Any) -> Any:
         """What the kernel returns where Python runs it."""
-        given = [each.for_python if isinstance(each, Held) else each for each in arguments]
+        given = [each.for_python if isinstance(each, MadeByKernel) else each for each in arguments]
         return interpreted(self.kernel)(*((self.law, *given) if self.law else given))
 
     def _is_for_machine(self, key: Any, arguments: tuple[Any, ...]) -> bool:
@@ -208,7 +210,7 @@ class KernelCall:
 
 
 def _for_machine(value: Any) -> Any:
-    return value.for_machine if isinstance(value, Held) else value
+    return value.for_machine if isinstance(value, MadeByKernel) else value
 
 
 def _is_planar(value: Any) -> bool:
@@ -224,7 +226,7 @@ def _kind(value: Any) -> Any:
         return value.dtype.char, value.ndim, value.flags.c_contiguous, value.flags.writeable
     if isinstance(value, tuple):
         return type(value), *map(_kind, value)
-    return value.kind if isinstance(value, Held) else type(value)
+    return value.kind if isinstance(value, MadeByKernel) else type(value)
 
 
 @contextlib.contextmanager

@@ -38,7 +38,7 @@ from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
 from frictionlab.methods.periodic.lane_record import differentiate_in_lanes, record_in_lanes
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import MAP_KINDS, map_kind, unpack, whole_size_of
-from frictionlab.methods.periodic.setting import held_maps
+from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.methods.under_way import once
 from frictionlab.motion.equation import runs_away, swing_of
@@ -115,7 +115,7 @@ class PeriodicProblem:
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
-        self.maps = held_maps(law, self.body)
+        self.maps = table_of_maps(law, self.body)
         linear = scene.is_harmonic and not self.body.bends
         constant = linear and not isinstance(self.zero, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)

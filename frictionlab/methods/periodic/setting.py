@@ -22,7 +22,7 @@ from frictionlab.compile.addresses import (
     machine_type,
     written_to,
 )
-from frictionlab.compile.call import Held
+from frictionlab.compile.call import MadeByKernel
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.interpret import interpreted
@@ -272,11 +272,11 @@ maps_of, maps_by_path = (
 """(law, body): the law and the body where they lie, and their maps; by path: of a bristle whose path is exact."""
 
 
-def held_maps(law: FrictionLaw, body: BodyNumbers) -> Held:
-    """The maps of a law on a body, for other kernels to call."""
+def table_of_maps(law: FrictionLaw, body: BodyNumbers) -> MadeByKernel:
+    """Return the table of the maps of a law on a body, for other kernels to call."""
     pathless = isinstance(body.reference_sine, complex) or bool(body.relaxing)
     by_path = map_kind(law, pathless) == "exact path" and not getattr(body.varying, "keeps_stiffness", ())
-    return Held(maps_by_path if by_path else maps_of, law, body)
+    return MadeByKernel(maps_by_path if by_path else maps_of, law, body)
 
 
 # --- what a search asks ---------------------------------------------------------------------------------------------

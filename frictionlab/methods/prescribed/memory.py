@@ -21,7 +21,7 @@ from frictionlab.methods.periodic.attraction import (
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
-from frictionlab.methods.periodic.setting import held_maps
+from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.words import ModelWord
@@ -47,7 +47,7 @@ class MemoryPoint:
         self.law = law.under_load(self.motion.normal_load)
         self.zero: complex = 0.0 if scene.load_along_belt_only else 0j
         self.body = driven(self.motion, self.zero)
-        self.maps = held_maps(self.law, self.body)
+        self.maps = table_of_maps(self.law, self.body)
         self.slip = None if scene.is_harmonic else VaryingSlip.of(scene.signals(), self.motion.normal_load)
         self.status: Status = "ok"
         self.reason, self.model = "", str(ModelWord.PRESCRIBED_MEMORY)

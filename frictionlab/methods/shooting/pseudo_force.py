@@ -24,7 +24,7 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.continuation import Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
-from frictionlab.methods.periodic.setting import held_maps
+from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.motion.orbit.sample import phasors_of_panels
 from frictionlab.scene.body import Mass, on_the_line
@@ -132,7 +132,7 @@ class MassUnderForce:
             varying=varying._replace(quickest=self.quickest),
         )
         periods = float(self.scene.periods)
-        maps = held_maps(self.law, on_the_line(mass, periods))
+        maps = table_of_maps(self.law, on_the_line(mass, periods))
         guess = np.empty((0, 0)) if state is None else state[None]
         goal = Goal(tolerance, self.contracts, False, False)
         arguments = maps, periods, np.array([belt_speed]), guess, goal, Wanted(True, True, False)

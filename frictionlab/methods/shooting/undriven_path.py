@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.call import Held, KernelCall
+from frictionlab.compile.call import KernelCall, MadeByKernel
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, stated_error
 from frictionlab.methods.periodic.period_map import start_of, whole_size_of
-from frictionlab.methods.periodic.setting import Maps, Setting, held_maps, recorded_map
+from frictionlab.methods.periodic.setting import Maps, Setting, recorded_map, table_of_maps
 from frictionlab.motion.equation import (
     START,
     belt_velocity,
@@ -144,8 +144,8 @@ class UndrivenPath:
         return on_the_line(self.mass)
 
     @cached_property
-    def _maps(self) -> Held:
-        return held_maps(self.law, self._body)
+    def _maps(self) -> MadeByKernel:
+        return table_of_maps(self.law, self._body)
 
     @cached_property
     def size(self) -> int:

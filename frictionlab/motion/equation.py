@@ -487,12 +487,12 @@ _bent_impulse = by_springs(lambda body, belt_speed, start, end, x: 0.0 * x, _imp
 @inner
 def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
     """Integral of that force; x at the start."""
-    way = belt_path(body, belt_speed, start, end) + 0.0 * x
+    travel = belt_path(body, belt_speed, start, end) + 0.0 * x
     positions = (end - start) * x + belt_path_integral(body, belt_speed, start, end)
     first, last = instant_at(body, start), instant_at(body, end)
     gained = belt_velocity(body, belt_speed, last) - belt_velocity(body, belt_speed, first)
-    springs = linear_force(body, positions, way) + _bent_impulse(body, belt_speed, start, end, x)
-    relaxing = held_back_impulse(body, belt_speed, start, end, way.real)
+    springs = linear_force(body, positions, travel) + _bent_impulse(body, belt_speed, start, end, x)
+    relaxing = held_back_impulse(body, belt_speed, start, end, travel.real)
     return load_impulse(body, start, end) - springs - gained - along_x1(relaxing, x)
 
 

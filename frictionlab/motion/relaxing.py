@@ -204,13 +204,13 @@ held_back = by_relaxing(lambda body, belt_speed, tau, velocity, pushed: (0.0, 0.
 acceleration are the belt's along x1."""
 
 
-def _impulse_at_rest(body: BodyNumbers, belt_speed: float, start: float, end: float, way: float) -> float:
+def _impulse_at_rest(body: BodyNumbers, belt_speed: float, start: float, end: float, travel: float) -> float:
     gained = _forces_at_rest(body, belt_speed, end) - _forces_at_rest(body, belt_speed, start)
-    return summed((way * body.relaxing.stiffness - gained) / body.relaxing.rate)
+    return summed((travel * body.relaxing.stiffness - gained) / body.relaxing.rate)
 
 
-held_back_impulse = by_relaxing(lambda body, belt_speed, start, end, way: 0.0, _impulse_at_rest)
-"""held_back_impulse(body, belt_speed, start, end, way): its integral; way: of the belt along x1."""
+held_back_impulse = by_relaxing(lambda body, belt_speed, start, end, travel: 0.0, _impulse_at_rest)
+"""held_back_impulse(body, belt_speed, start, end, travel): its integral; travel: of the belt along x1."""
 
 
 @fast

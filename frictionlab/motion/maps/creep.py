@@ -110,35 +110,35 @@ def _stretch_along(w: Any, scale: float) -> float:
     return math.hypot(scale, length(w))
 
 
-def _stretched_in_the_plane(w: complex, scale: float, way: complex) -> complex:
+def _stretched_in_the_plane(w: complex, scale: float, change: complex) -> complex:
     far = length(w)
     if far == 0.0:
-        return scale * way
-    turned = way * w.conjugate() / far
+        return scale * change
+    turned = change * w.conjugate() / far
     across = far / math.asinh(far / scale)
     return complex(_stretch_along(w, scale) * turned.real, across * turned.imag) * w / far
 
 
-def _shrunk_in_the_plane(w: complex, scale: float, way: complex) -> complex:
+def _shrunk_in_the_plane(w: complex, scale: float, change: complex) -> complex:
     far = length(w)
     if far == 0.0:
-        return way / scale
-    turned = way * w.conjugate() / far
+        return change / scale
+    turned = change * w.conjugate() / far
     across = far / math.asinh(far / scale)
     return complex(turned.real / _stretch_along(w, scale), turned.imag / across) * w / far
 
 
-_stretched = by_dimension(lambda w, scale, way: _stretch_along(w, scale) * way, _stretched_in_the_plane)
-"""_stretched(w, scale, way): J(w) of a way of q."""
-_shrunk = by_dimension(lambda w, scale, way: way / _stretch_along(w, scale), _shrunk_in_the_plane)
-"""_shrunk(w, scale, way): the way of q that J(w) makes this of."""
+_stretched = by_dimension(lambda w, scale, change: _stretch_along(w, scale) * change, _stretched_in_the_plane)
+"""_stretched(w, scale, change): J(w), the derivative at w, of a change of q."""
+_shrunk = by_dimension(lambda w, scale, change: change / _stretch_along(w, scale), _shrunk_in_the_plane)
+"""_shrunk(w, scale, change): change of q that J(w) turns into this one."""
 
 
 # --- what a step takes ----------------------------------------------------------------------------------------------
 
 
 @inner
-def _taken(work: Work, w: Any) -> Any:
+def _step_variable(work: Work, w: Any) -> Any:
     scale, start = work.creep[SCALE], work.start[U]
     if scale == 0.0:
         return w
@@ -146,7 +146,7 @@ def _taken(work: Work, w: Any) -> Any:
 
 
 @inner
-def _told(work: Work, p: Any) -> Any:
+def _velocity_of(work: Work, p: Any) -> Any:
     scale, start = work.creep[SCALE], work.start[U]
     if scale == 0.0:
         return p
@@ -154,13 +154,13 @@ def _told(work: Work, p: Any) -> Any:
 
 
 @inner
-def _rate_taken(work: Work, w: Any, a: Any) -> Any:
+def _step_variable_rate(work: Work, w: Any, a: Any) -> Any:
     scale, start = work.creep[SCALE], work.start[U]
     return a if _weightless(work) else _stretched(start, scale, _shrunk(w, scale, a))
 
 
 @inner
-def _error_told(work: Work, error: Any) -> float:
+def _velocity_error(work: Work, error: Any) -> float:
     scale, start, end, most = work.creep[SCALE], work.start[U], work.end[U], length(error)
     if scale == 0.0:
         return most
@@ -172,13 +172,15 @@ def _error_told(work: Work, error: Any) -> float:
     return max(ends, most, work.creep[SLOW] / (BELOW * CLOSE) * length(lengthens))
 
 
-velocity_taken = by_scalars(lambda law, work, w: w, lambda law, work, w: _taken(work, w))
-"""velocity_taken(law, work, w): what a step from ``work.start`` takes in the place of a velocity held."""
-velocity_told = by_scalars(lambda law, work, p: p, lambda law, work, p: _told(work, p))
-"""velocity_told(law, work, p): the other way round."""
-rate_taken = by_scalars(lambda law, work, w, a: a, lambda law, work, w, a: _rate_taken(work, w, a))
-"""rate_taken(law, work, w, a): its rate where the velocity held is w and goes at the rate a."""
-error_told = by_scalars(
-    lambda law, work, error: length(error), lambda law, work, error: _error_told(work, error)
+to_step_variable = by_scalars(lambda law, work, w: w, lambda law, work, w: _step_variable(work, w))
+"""to_step_variable(law, work, w): what a step from ``work.start`` takes in the place of a velocity held."""
+from_step_variable = by_scalars(lambda law, work, p: p, lambda law, work, p: _velocity_of(work, p))
+"""from_step_variable(law, work, p): the other way round."""
+step_variable_rate = by_scalars(
+    lambda law, work, w, a: a, lambda law, work, w, a: _step_variable_rate(work, w, a)
 )
-"""error_told(law, work, error): how far the velocity at ``work.end`` is off, from the error of what the step took."""
+"""step_variable_rate(law, work, w, a): its rate where the velocity held is w and goes at the rate a."""
+velocity_error = by_scalars(
+    lambda law, work, error: length(error), lambda law, work, error: _velocity_error(work, error)
+)
+"""velocity_error(law, work, error): how far the velocity at ``work.end`` is off, from the error of what the step took."""

@@ -44,18 +44,20 @@ def _follows(law: Any, work: Work, k: int, v: Any, z: Any) -> bool:
 @inner
 def _first_yield(law: Any, work: Work, k: int, v: Any) -> float:
     """The deflection along v from which on it does not follow the slip v any more; 0 for none."""
-    way = v / length(v)
+    along = v / length(v)
     usual = work.size[k]  # in steady sliding: mostly where it yields
-    if _follows(law, work, k, v, (1.0 - 1e-12) * usual * way) and not _follows(law, work, k, v, usual * way):
+    if _follows(law, work, k, v, (1.0 - 1e-12) * usual * along) and not _follows(
+        law, work, k, v, usual * along
+    ):
         return usual
     low, high = 0.0, 1e3 * usual
-    if not _follows(law, work, k, v, 1e-9 * usual * way) or _follows(law, work, k, v, high * way):
+    if not _follows(law, work, k, v, 1e-9 * usual * along) or _follows(law, work, k, v, high * along):
         return 0.0
     while True:
         middle = 0.5 * (low + high)
         if not low < middle < high:
             return high
-        if _follows(law, work, k, v, middle * way):
+        if _follows(law, work, k, v, middle * along):
             low = middle
         else:
             high = middle
@@ -65,16 +67,16 @@ def _first_yield(law: Any, work: Work, k: int, v: Any) -> float:
 def _yields_at(law: Any, work: Work, k: int, v: Any, radius: float) -> bool:
     """Whether the deflection follows the slip v everywhere below the radius and is not stretched at it."""
     speed = length(v)
-    way = v / speed
+    along = v / speed
     for part in range(1, SHARES + 1):
         share = (1.0 - 1e-9) * radius * part / SHARES
-        if not (_follows(law, work, k, v, share * way) and _follows(law, work, k, v, -share * way)):
+        if not (_follows(law, work, k, v, share * along) and _follows(law, work, k, v, -share * along)):
             return False
     # unloaded from the surface, too, it follows the slip
-    if not _follows(law, work, k, v, -radius * way):
+    if not _follows(law, work, k, v, -radius * along):
         return False
     # at the surface slip turns it, but stretches it no further
-    work.memory[k] = radius * way
+    work.memory[k] = radius * along
     return length(law.rate(v, work.memory, k)) <= ALIKE * speed
 
 

@@ -91,7 +91,7 @@ def _leg(case: Case, side: float, tau: float, y: float, z: float) -> Leg:
 
 
 @fast
-def _way(leg: Leg, now: Instant, y: float) -> float:
+def _path_of(leg: Leg, now: Instant, y: float) -> float:
     """How far the leg has slid, in its direction."""
     body = leg.body
     swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.start.reference
@@ -105,7 +105,7 @@ def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     side, law, now = leg.side, leg.law, instant_near(leg, tau)
     # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
     w = side * max(side * deviation_slip(leg, now, u), 0.0)
-    z = law.deflected(leg.start.z, side * _way(leg, now, y))
+    z = law.deflected(leg.start.z, side * _path_of(leg, now, y))
     rub = law.friction(w, z, law.rate(w, z))
     return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
 
@@ -124,39 +124,39 @@ stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
 
 
 @inner
-def _slid(leg: Leg, tau: float, y: float) -> float:
-    return _way(leg, instant_near(leg, tau), y)
+def _path_at(leg: Leg, tau: float, y: float) -> float:
+    return _path_of(leg, instant_near(leg, tau), y)
 
 
 @inner
-def share_of_the_way(law: Any, body: BodyNumbers, accuracy: float) -> float:
+def share_of_path(law: Any, body: BodyNumbers, accuracy: float) -> float:
     """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
     impulse = body.normal_load * law.sliding_friction(0.0)
     return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)
 
 
 @inner
-def _longest(leg: Leg, way: float, share: float, w: float, rate: float) -> float:
+def _longest(leg: Leg, path: float, share: float, w: float, rate: float) -> float:
     """The longest step that adds no more than this share of the way, or of the bristle's own length."""
     law = leg.law
     length = law.largest_deflection()
     here, next_ = (
-        law.deflected(leg.start.z, leg.side * way),
-        law.deflected(leg.start.z, leg.side * (way + length)),
+        law.deflected(leg.start.z, leg.side * path),
+        law.deflected(leg.start.z, leg.side * (path + length)),
     )
     if abs(next_ - here) <= 1e-13 * length:
         return 1e300
-    ahead = share * max(length, way)
+    ahead = share * max(length, path)
     return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(rate) * ahead) + 1e-300)
 
 
 @inner
-def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> Any:
+def _until_path(leg: Leg, tau: float, state: State, high: float, path: float) -> Any:
     """The step at whose end the leg has slid this way (safeguarded Newton)."""
     low, h = 0.0, high
     taken = step(leg, tau, state, h)
     for _ in range(60):
-        beyond = _slid(leg, tau + h, taken.x) - way
+        beyond = _path_at(leg, tau + h, taken.x) - path
         low, high = (low, h) if beyond > 0.0 else (h, high)
         speed = leg.side * slip_at(leg, tau + h, taken.v)
         trial = h - beyond / speed if speed > 0.0 else low
@@ -213,7 +213,7 @@ class PathNode(NamedTuple):
     leg: Leg
     tau: float
     state: State
-    way: float
+    path: float
     corner: float
     leaving: bool
 
@@ -257,9 +257,9 @@ def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
     if ending.verdict == REPEAT:
         return ending
     # where friction saturates for good it has a corner
-    beyond = _slid(leg, tau + ending.h, ending.taken.x) > corner * (1.0 + 1e-14)
-    if node.way < corner < math.inf and beyond:
-        h, taken = _until_way(leg, tau, node.state, ending.h, corner)
+    beyond = _path_at(leg, tau + ending.h, ending.taken.x) > corner * (1.0 + 1e-14)
+    if node.path < corner < math.inf and beyond:
+        h, taken = _until_path(leg, tau, node.state, ending.h, corner)
         return PathStep(SATURATE, h, taken)
     return ending
 
@@ -280,14 +280,14 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
     """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one ends."""
     leg, taken = node.leg, ending.taken
     # A way of rounding size may shrink: the corner at its end, once passed, would be met again for ever.
-    way = max(node.way, _slid(leg, node.tau + ending.h, taken.x))
-    way = node.corner if ending.verdict == SATURATE else way
+    path = max(node.path, _path_at(leg, node.tau + ending.h, taken.x))
+    path = node.corner if ending.verdict == SATURATE else path
     if ending.verdict == TURN:
-        z = leg.law.deflected(leg.start.z, leg.side * way)
+        z = leg.law.deflected(leg.start.z, leg.side * path)
         return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)
     leg = _anchored(leg, tau)
     a, rub = path_rates(leg, tau, taken.x, taken.v)
-    return PathNode(leg, tau, State(taken.x, taken.v, a, rub, 0.0, 0.0), way, node.corner, False)
+    return PathNode(leg, tau, State(taken.x, taken.v, a, rub, 0.0, 0.0), path, node.corner, False)
 
 
 @inner
@@ -298,7 +298,7 @@ def _first_node(case: Case, tau: float, y: float, u: float, z: float) -> PathNod
 @inner
 def _deflection_at(node: PathNode) -> float:
     leg = node.leg
-    return leg.law.deflected(leg.start.z, leg.side * _slid(leg, node.tau, node.state.x))
+    return leg.law.deflected(leg.start.z, leg.side * _path_at(leg, node.tau, node.state.x))
 
 
 @inner
@@ -344,7 +344,7 @@ def _path_piece(case: Case, tau: float, end: float, image: Carried, stepping: St
     """Between two corners of what changes in time; image: the state at the first, and what was met so far."""
     law, body, accuracy = case.law, case.body, stepping.accuracy
     longest = longest_step(body, law.sliding_friction(0.0), accuracy)
-    share = share_of_the_way(law, body, accuracy)
+    share = share_of_path(law, body, accuracy)
     y, u, z, friction_impulse, closest, steps = image
     node = _first_node(case, tau, y, u, z)
     h = 0.1 * longest
@@ -353,8 +353,8 @@ def _path_piece(case: Case, tau: float, end: float, image: Carried, stepping: St
         w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
         # in the layer behind a reversal steps grow with the way, lest a tolerance jumps over it
-        layered = node.corner > node.way or node.corner == math.inf
-        ahead = _longest(leg, node.way, share, w, rate) if layered else 1e300
+        layered = node.corner > node.path or node.corner == math.inf
+        ahead = _longest(leg, node.path, share, w, rate) if layered else 1e300
         h = min(h, ahead, longest, end - tau)
         ending, growth = _attempt(node, h, ahead < 1e300, accuracy)
         tried, h, steps = h, ending.h, steps + 1

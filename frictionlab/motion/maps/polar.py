@@ -73,7 +73,7 @@ class Workspace(NamedTuple):
     times: Any
 
 
-class Way(NamedTuple):
+class Progress(NamedTuple):
     """How far a map is: where, whether at rest, just set off, the next step, and what guesses it.
 
     before: > 0 the length of the step taken before, < 0 that of one from here that was not accurate, 0 for neither.
@@ -121,7 +121,7 @@ def quickest(body: BodyNumbers) -> float:
 
 
 @inner
-def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) -> Way:
+def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) -> Progress:
     """The beginning of a map, where the tangent is the identity in the norm of energy."""
     tangent, r, body = room.tangent, abs(w), case.body
     resting = r <= 1e-14 * (swing_of(body) + abs(case.belt_speed))
@@ -138,16 +138,16 @@ def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) ->
     for k in range(4):
         room.times[k] = 0.0
     place = SlipPlace(tau, x, 0.0, 0.0) if resting else SlipPlace(tau, x, r, cmath.phase(w))
-    return Way(place, resting, False, 0.1 / quickest(body), 0.0)
+    return Progress(place, resting, False, 0.1 / quickest(body), 0.0)
 
 
 # --- rest -----------------------------------------------------------------------------------------------------------
 
 
 @inner
-def _rest(case: Case, way: Way, end: float, room: Workspace, track: Track) -> Way:
+def _rest(case: Case, at: Progress, end: float, room: Workspace, track: Track) -> Progress:
     """Rest until slip begins or the map ends."""
-    body, belt_speed, place, tangent = case.body, case.belt_speed, way.place, room.tangent
+    body, belt_speed, place, tangent = case.body, case.belt_speed, at.place, room.tangent
     tau, until = place.tau, end_of_rest(case, place.tau, place.x, end)
     lasts = until - tau
     if track.stick.size > 0 and lasts > 0.0:
@@ -166,11 +166,13 @@ def _rest(case: Case, way: Way, end: float, room: Workspace, track: Track) -> Wa
         tangent.total[k] += lasts * shift
         pulled = restoring_force(body, shift, 0j) * held.conjugate()
         tangent.r[k], tangent.theta[k] = 0.0, -pulled.imag / (abs(held) ** 2 + 1e-300)
-    return Way(SlipPlace(until, x, 0.0, cmath.phase(held)), until >= end, True, 0.1 / quickest(body), 0.0)
+    return Progress(
+        SlipPlace(until, x, 0.0, cmath.phase(held)), until >= end, True, 0.1 / quickest(body), 0.0
+    )
 
 
 @inner
-def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Track) -> Way:
+def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Track) -> Progress:
     """Go the short way to rest: slip falls evenly there."""
     body, belt_speed, tangent = case.body, case.belt_speed, room.tangent
     tau, turned = place.tau + wait, cmath.exp(1j * place.theta)
@@ -192,7 +194,7 @@ def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Tra
         moved = complex(tangent.r[k], 0.5 * place.r * tangent.theta[k])
         tangent.x[k] += wait * moved * turned
         tangent.r[k], tangent.theta[k] = 0.0, 0.0
-    return Way(SlipPlace(tau, x, 0.0, 0.0), True, False, 0.0, 0.0)
+    return Progress(SlipPlace(tau, x, 0.0, 0.0), True, False, 0.0, 0.0)
 
 
 # --- slip -----------------------------------------------------------------------------------------------------------
@@ -232,50 +234,50 @@ def _lands(case: Case, place: SlipPlace, near: Approach, accuracy: float) -> boo
 
 
 @inner
-def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, track: Track) -> Way:
+def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, track: Track) -> Progress:
     """Slip that no step resolves is as good as rest: it is left out, and time goes on a moment."""
     if abs(near.held) < near.limit:
         return _land(case, place, 0.0, room, track)
     room.times[LEFT_OUT] += 1.0
-    way = _land(case, place, 1e-10 / case.body.frequency, room, track)
-    return Way(way.place, True, False, 0.0, 0.0)
+    at = _land(case, place, 1e-10 / case.body.frequency, room, track)
+    return Progress(at.place, True, False, 0.0, 0.0)
 
 
 @inner
-def _slip(case: Case, way: Way, end: float, accuracy: float, room: Workspace, track: Track) -> Way:
+def _slip(case: Case, at: Progress, end: float, accuracy: float, room: Workspace, track: Track) -> Progress:
     """One step of slip, or the end of it; the way as it was, with a shorter step, where that is not accurate."""
-    place, step = way.place, room.step
+    place, step = at.place, room.step
     near = _approach(case, place)
-    if not way.leaving and _lands(case, place, near, accuracy):
+    if not at.leaving and _lands(case, place, near, accuracy):
         return _land(case, place, near.wait, room, track)
     # the longest step falls with the accuracy: else two maps may agree because both are limited by it
     finer = (accuracy / _unit(case) / FIRST_ACCURACY) ** 0.08
-    h = min(min(way.h, finer / quickest(case.body)), end - place.tau)
-    if not way.leaving:
+    h = min(min(at.h, finer / quickest(case.body)), end - place.tau)
+    if not at.leaving:
         h = min(h, 0.8 * near.wait)
     if h < SHORTEST_SLIP * span(case.body) and end - place.tau > h:
         return _give_way(case, place, near, room, track)
     # the polynomial of the step before goes on into this one, a step that is taken shorter is a part of its own
-    if way.before > 0.0 and h < 2.0 * way.before:
-        guess_on(place, 1.0, 1.0 + h / way.before, step)
-    elif way.before < 0.0:
-        guess_on(place, 0.0, -h / way.before, step)
+    if at.before > 0.0 and h < 2.0 * at.before:
+        guess_on(place, 1.0, 1.0 + h / at.before, step)
+    elif at.before < 0.0:
+        guess_on(place, 0.0, -h / at.before, step)
     else:
         guess_afresh(place, h, near.held, near.rate, near.limit, step)
     begin_step(case, place, h, step)
     if not solve_step(case, place, h, step):
-        return Way(place, False, way.leaving, 0.3 * h, 0.0)
+        return Progress(place, False, at.leaving, 0.3 * h, 0.0)
     error = step_error(h, accuracy, step)
     # five stages: the highest of their Legendre polynomials, which the error is read from, falls as h^5
     growth = min(4.0, 0.9 / (error + 1e-300) ** 0.2)
     if error > 1.0:
-        return Way(place, False, way.leaving, max(0.2, growth) * h, -h)
+        return Progress(place, False, at.leaving, max(0.2, growth) * h, -h)
     if track.stick.size > 0:
         _note_slip(track, place.tau, h, False, case, place, h, step)
     room.totals[POSITION] += end_step(case, place, h, step, room.tangent)
     tau = place.tau + h if end - place.tau > h else end
     place = SlipPlace(tau, step.x[step.x.size - 1], step.r[step.x.size], step.theta[step.x.size])
-    return Way(place, False, False, growth * h, h)
+    return Progress(place, False, False, growth * h, h)
 
 
 @inner
@@ -317,14 +319,14 @@ def polar_map(
     accuracy: of slip in each step, relative to ``_unit``. On a track with room every piece of the way is noted.
     """
     finest = accuracy * _unit(case)
-    way = _set_out(case, start.tau, start.x, start.r * cmath.exp(1j * start.theta), room)
+    at = _set_out(case, start.tau, start.x, start.r * cmath.exp(1j * start.theta), room)
     corrections, gap = room.step.corrections, 4e-15 * (abs(end) + span(case.body))
     corrections[0] = 0.0
-    while end - way.place.tau > gap:
-        corrections[0] += REST_TAKES if way.resting else 1.0
+    while end - at.place.tau > gap:
+        corrections[0] += REST_TAKES if at.resting else 1.0
         if corrections[0] > MOST_CORRECTIONS_A_MAP or room.times[LEFT_OUT] > MOST_LEFT_OUT:
-            return Image(way.place.x, 0j, -1)
-        at_rest = way.resting
-        way = _rest(case, way, end, room, track) if at_rest else _slip(case, way, end, finest, room, track)
-    place = way.place
+            return Image(at.place.x, 0j, -1)
+        at_rest = at.resting
+        at = _rest(case, at, end, room, track) if at_rest else _slip(case, at, end, finest, room, track)
+    place = at.place
     return Image(place.x, place.r * cmath.exp(1j * place.theta), int(corrections[0]))

@@ -142,10 +142,10 @@ def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
         room.slope[j] = room.pressed[j] * friction_slope(case, room.r[j + 1])
     # x at a stage is the integral of v by the collocation polynomial through the stages
     for j in range(STAGES):
-        way = 0.0 * place.x
+        increment = 0.0 * place.x
         for k in range(STAGES):
-            way += MATRIX[j, k] * room.v[k]
-        room.x[j] = place.x + h * way
+            increment += MATRIX[j, k] * room.v[k]
+        room.x[j] = place.x + h * increment
         force = room.pushed[j] - restoring_force(case.body, room.x[j], room.v[j])
         room.force[j] = force * room.along[j].conjugate()
 

@@ -125,12 +125,12 @@ def _still(y: Any, u: Any, force: Any) -> State:
 
 
 _growing = by_relaxing(
-    lambda problem, start, lasts, way: 0.0,
-    lambda problem, start, lasts, way: (
-        start.e + problem.body.relaxing.stiffness * way - (lasts * problem.body.relaxing.rate) * start.e
+    lambda problem, start, lasts, moved: 0.0,
+    lambda problem, start, lasts, moved: (
+        start.e + problem.body.relaxing.stiffness * moved - (lasts * problem.body.relaxing.rate) * start.e
     ),
 )
-"""_growing(problem, start, lasts, way): relaxing forces after a while so short that they grow evenly."""
+"""_growing(problem, start, lasts, moved): relaxing forces after a while so short that they grow evenly."""
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------

@@ -19,7 +19,13 @@ from frictionlab.compile.dispatch import by_dimension, by_relaxing, by_scalars, 
 from frictionlab.compile.stack import count_of
 from frictionlab.motion.equation import Flow, instant_near, load_share, restoring_force
 from frictionlab.motion.linalg import add, apply, block, diagonal, inverse, keep, product, scale
-from frictionlab.motion.maps.creep import creeps, error_told, rate_taken, velocity_taken, velocity_told
+from frictionlab.motion.maps.creep import (
+    creeps,
+    from_step_variable,
+    step_variable_rate,
+    to_step_variable,
+    velocity_error,
+)
 from frictionlab.motion.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -222,7 +228,7 @@ def _error(flow: Flow, work: Work, zero: Any) -> float:
     n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
     last = rows_of(flow) * (STAGES - 1)
     error = _elastic(body, work.increments[last + Y])
-    velocity = error_told(flow.law, work, work.increments[last + U])
+    velocity = velocity_error(flow.law, work, work.increments[last + U])
     error += velocity * velocity
     error += square(body.normal_load * work.increments[last + IMPULSE])
     for k in range(n):
@@ -247,20 +253,20 @@ def step(flow: Flow, tau: float, h: float, work: Work, zero: Any) -> float:
         if not _within(flow, work):
             return math.inf
         taken = work.stage[U]
-        work.stage[U] = velocity_told(flow.law, work, taken)
+        work.stage[U] = from_step_variable(flow.law, work, taken)
         if 0 < i < SIMULTANEOUS:
             now = instant_near(flow, tau + TIMES[i] * h)
         fill_rates(flow, now, work, zero)
         if creeps(flow.law, work):
             work.rates[IMPULSE] = work.rates[IMPULSE] + work.rates[U] / flow.body.normal_load
-        work.rates[U] = rate_taken(flow.law, work, work.stage[U], work.rates[U])
+        work.rates[U] = step_variable_rate(flow.law, work, work.stage[U], work.rates[U])
         _right_side(i, flow, h, work)
         _solve(i, flow, h, work, zero)
     # the last increment is the difference to the embedded method, and ends the step
     last = size * (STAGES - 1)
     for row in range(size):
         work.end[row] = work.stage[row] + work.increments[last + row]
-    work.end[U] = velocity_told(flow.law, work, taken + work.increments[last + U])
+    work.end[U] = from_step_variable(flow.law, work, taken + work.increments[last + U])
     if creeps(flow.law, work):
         work.end[IMPULSE] = work.end[IMPULSE] - (work.end[U] - work.start[U]) / flow.body.normal_load
     return _error(flow, work, zero)
@@ -284,11 +290,11 @@ def within_step(flow: Flow, share: float, work: Work) -> None:
     size, rest = rows_of(flow), 1.0 - share
     for row in range(size):
         bent = work.bends[row] + share * (work.bends[size + row] + share * work.bends[2 * size + row])
-        end = work.end[row] if row != U else velocity_taken(flow.law, work, work.end[row])
+        end = work.end[row] if row != U else to_step_variable(flow.law, work, work.end[row])
         work.stage[row] = rest * work.start[row] + share * (end + rest * bent)
     # a polynomial may leave the set of a scalar's values, a straight line does not
     if not _within(flow, work):
         for row in range(size):
             work.stage[row] = rest * work.start[row] + share * work.end[row]
     else:
-        work.stage[U] = velocity_told(flow.law, work, work.stage[U])
+        work.stage[U] = from_step_variable(flow.law, work, work.stage[U])

@@ -66,7 +66,7 @@ def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> f
     """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
     if look_ahead(body) < 1e300:  # the force of such springs grows as nobody looks at here
         return 1.0
-    x, way, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
+    x, travel, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
     last = _velocity_at(in_piece(body, pieces - 1), belt_speed, span(body))
     for k in range(pieces):
         piece = in_piece(body, k)
@@ -74,9 +74,9 @@ def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> f
         # a belt whose velocity jumps leaves the mass behind
         if abs(_velocity_at(piece, belt_speed, start) - last) > 1e-12 * (abs(last) + belt_swing(body)):
             return 1.0
-        room = min(room, _room_at_rest(law, piece, belt_speed, x + way, start, end))
-        way, last = way + belt_path(piece, belt_speed, start, end), _velocity_at(piece, belt_speed, end)
-    return max(1.0, math.floor(room / abs(restoring_force(body, way, 0.0 * way))))
+        room = min(room, _room_at_rest(law, piece, belt_speed, x + travel, start, end))
+        travel, last = travel + belt_path(piece, belt_speed, start, end), _velocity_at(piece, belt_speed, end)
+    return max(1.0, math.floor(room / abs(restoring_force(body, travel, 0.0 * travel))))
 
 
 @inner

@@ -157,8 +157,8 @@ def _one_panel(path: _Path, panel: int, half: float, start: Numbers) -> Numbers 
 
     def rates(numbers: Floats) -> Floats:
         memory = folded(numbers)
-        told = [path.resistance((panel, k + 1), memory[k])[0] for k in range(nodes)]
-        return unfolded(np.array(told, np.complex128))
+        rates_at_nodes = [path.resistance((panel, k + 1), memory[k])[0] for k in range(nodes)]
+        return unfolded(np.array(rates_at_nodes, np.complex128))
 
     begin = unfolded(start[None])[0]
     numbers = np.repeat(begin[None], nodes, axis=0)

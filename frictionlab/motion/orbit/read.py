@@ -284,7 +284,7 @@ def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: floa
     half = 0.5 * (tau[NODES.size - 1] - tau[0])
     position, friction_impulse, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
     put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
-    way, force, swing, strongest, fastest = 0j, 0j, 0.0, 0.0, 0.0
+    displacement, force, swing, strongest, fastest = 0j, 0j, 0.0, 0.0, 0.0
     for node in range(NODES.size):
         weight, now = half * WEIGHTS[node], instant_at(body, tau[node])
         turn = complex(now.cosine, now.sine)
@@ -304,11 +304,11 @@ def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: floa
         viscous = viscous + weight * _power(dissipated(body, x[node], velocity), velocity)
         taken = taken + pressed * _power(rub, velocity)
         contact = contact + pressed * _power(rub, w)
-        way = way + weight * velocity
+        displacement = displacement + weight * velocity
         force = force + pressed * rub
         swing = swing + weight * _power(velocity, velocity)
         strongest, fastest = max(strongest, abs(pushed)), max(fastest, abs(velocity))
-    misfit = abs(way - (x[NODES.size - 1] - x[0]))
+    misfit = abs(displacement - (x[NODES.size - 1] - x[0]))
     return Sums(
         a.duration + 2.0 * half,
         a.position + position,
@@ -320,7 +320,7 @@ def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: floa
         a.by_friction + taken,
         a.contact + contact,
         a.stick + 2.0 * half * stuck,
-        a.moved + way,
+        a.moved + displacement,
         a.pressed + force,
         a.swing + swing,
         a.misfit_load + strongest * misfit,

@@ -126,17 +126,17 @@ def solve_stage(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Stage
     at = gap_of(rates, problem, stage, v, z)
     missed = size_of(stage, at)
     for _ in range(MOST_TRIALS):
-        way, part = newton_change(rates, problem, stage, z, at, v), 1.0
+        change, part = newton_change(rates, problem, stage, z, at, v), 1.0
         # A singular Jacobian gives an infinite or undefined step.
-        if not size_of(stage, way) < 1e300:
+        if not size_of(stage, change) < 1e300:
             return StageSolution(v, z, False)
-        ahead = gap_of(rates, problem, stage, v + way.v, z + way.z)
+        ahead = gap_of(rates, problem, stage, v + change.v, z + change.z)
         # Halve the Newton step until the residual decreases; at a thousandth it is taken as it is.
         while part > 1e-3 and not size_of(stage, ahead) < missed:
             part = 0.5 * part
-            ahead = gap_of(rates, problem, stage, v + part * way.v, z + part * way.z)
-        v, z, at, missed = v + part * way.v, z + part * way.z, ahead, size_of(stage, ahead)
-        if part * size_of(stage, way) <= CLOSE or missed == 0.0:
+            ahead = gap_of(rates, problem, stage, v + part * change.v, z + part * change.z)
+        v, z, at, missed = v + part * change.v, z + part * change.z, ahead, size_of(stage, ahead)
+        if part * size_of(stage, change) <= CLOSE or missed == 0.0:
             return StageSolution(v, z, True)
     return StageSolution(v, z, False)
 

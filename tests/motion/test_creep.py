@@ -42,14 +42,14 @@ def step_from(start: Any, scale: float) -> Any:
 def test_what_a_step_takes_tells_the_slip(exponents, angles, scale, planar):
     start, w = (slip(*each, planar) for each in zip(exponents, angles, strict=True))
     work = step_from(start, scale)
-    taken = interpreted(creep.velocity_taken)(LAW, work, w)
-    back = interpreted(creep.velocity_told)(LAW, work, taken)
+    taken = interpreted(creep.to_step_variable)(LAW, work, w)
+    back = interpreted(creep.from_step_variable)(LAW, work, taken)
 
     # A logarithm is rounded by its size times 2e-16; across the slip J is smaller than along it by the logarithm, and
     # its inverse magnifies that.
     logarithm = 2.0 + math.log(1.0 / scale)
     assert abs(back - w) <= 4e-16 * logarithm**2 * (abs(w) + scale)
-    assert interpreted(creep.velocity_taken)(LAW, work, start) == start
+    assert interpreted(creep.to_step_variable)(LAW, work, start) == start
 
 
 @pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
@@ -58,10 +58,10 @@ def test_it_goes_at_the_rate_of_the_slip(exponents, angles, scale, planar):
     start, w = (slip(*each, planar) for each in zip(exponents, angles, strict=True))
     work, a = step_from(start, scale), slip(0.0, angles[0] + 1.0, planar)
     work.creep[creep.SLOW] = 0.0  # none is too slow for inertia
-    rate = interpreted(creep.rate_taken)(LAW, work, w, a)
+    rate = interpreted(creep.step_variable_rate)(LAW, work, w, a)
 
     shift = 1e-6 * min(max(abs(w), scale), 1.0)
-    ahead, behind = (interpreted(creep.velocity_taken)(LAW, work, w + s * shift * a) for s in (1.0, -1.0))
+    ahead, behind = (interpreted(creep.to_step_variable)(LAW, work, w + s * shift * a) for s in (1.0, -1.0))
     assert abs((ahead - behind) / (2.0 * shift) - rate) <= 1e-4 * abs(rate)
 
 

@@ -51,9 +51,9 @@ def _class(law: type[FrictionLaw]) -> str:
 
 
 def description(kind: type) -> str:
-    """The docstring without its examples, which are for Python."""
-    paragraphs = (inspect.getdoc(kind) or "").split("\n\n")
-    return "\n\n".join(each for each in paragraphs if not each.startswith(">>> "))
+    """Return the docstring of a class without its examples, which are for Python."""
+    text = re.sub(r"(?m)^Examples\n-{8}\n", "", inspect.getdoc(kind) or "")
+    return "\n\n".join(each for each in text.split("\n\n") if not each.startswith(">>> ")).rstrip()
 
 
 def _sources(kind: type[FrictionLaw] | type[Method]) -> list[str]:
@@ -127,14 +127,19 @@ def _rules(field: Any) -> list[Any]:
 
 
 def meaning(record: type[BaseModel], name: str) -> str:
-    """The text on a field in the docstring of its class, its name left out; '' without one.
+    """Return what the docstring of a class says of a field; '' if it says nothing.
 
-    It goes from the name at the start of a line to a blank line, the sources, or a line beginning with another field.
+    In a numpydoc section ``Parameters`` that is the indented text below the field. Elsewhere it goes from the name at
+    the start of a line to a blank line, the sources, or a line that begins with another field.
     """
-    text, fields = description(_owner(record, name)), "|".join(map(re.escape, record.model_fields))
+    owner, wanted = description(_owner(record, name)), re.escape(name)
+    for text in (description(record), owner):
+        if found := re.search(rf"^{wanted} : .*((?:\n+ +\S.*)+)", text, re.MULTILINE):
+            return " ".join(found[1].split()).removesuffix(".")
+    fields = "|".join(map(re.escape, record.model_fields))
     found = re.search(
-        rf"^{re.escape(name)}\b([ :,].*(?:\n(?!\s*$|Sources?:|\w+ \[|(?:{fields})\b ?[:,>(]).*)*)",
-        text,
+        rf"^{wanted}\b([ :,].*(?:\n(?!\s*$|Sources?:|\w+ \[|(?:{fields})\b ?[:,>(]).*)*)",
+        owner,
         re.MULTILINE,
     )
     said = " ".join(found[1].split()).lstrip(":, ") if found else ""

@@ -1,11 +1,15 @@
-"""Rate and friction of a contact that remembers; advance of one bristle, its projection onto the yield surface.
+"""Friction of a contact: rates of its memory, advance of a bristle, shares of a changing load, smoothed
+friction.
 
-Smoothed dry friction: the jump at rest replaced by a steep slope, for steppers that need smooth rates.
+First come rate and friction of a law with memory, then the advance of one bristle over a time and its
+projection onto the yield surface, then a contact of constant stiffness under a changing normal load.
 
-friction = phi(|v|/width) * sliding_vector(v), with phi(u) = tanh u, u/sqrt(1 + u^2) or (2/pi) arctan u. The mass then
-creeps where it should stick, and the mean is biased by an amount that falls with the width - in proportion to it,
-or to its square root where slip nearly vanishes without reversing; arctan, with its long tail, even where slip
-never comes near to rest. The width belongs to the method: no law knows of it.
+Last comes smoothed dry friction, in which a steep slope replaces the jump at rest, for steppers that need
+smooth rates: friction = phi(|v|/width) * sliding_vector(v), with phi(u) = tanh u, u/sqrt(1 + u^2) or (2/pi)
+arctan u. The mass then creeps where it should stick, which biases the mean. The bias falls in proportion to
+the width, or to its square root where slip nearly vanishes without reversing. With arctan, which has a long
+tail, the mean is biased even where slip never comes near to rest. The width belongs to the method: no law has
+one.
 """
 
 from __future__ import annotations
@@ -18,7 +22,8 @@ from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.laws.memory import PER_AXIS, VECTORIAL, bristle_in_the_plane, bristle_on_the_line
 
 resistance = by_dimension(bristle_on_the_line, bristle_in_the_plane)
-"""(law, slip velocity, deflection) -> (rate of deflection, friction coefficient), interpreted and compiled."""
+"""resistance(law, w, z): rate of deflection and friction coefficient at slip velocity w; interpreted and
+compiled."""
 
 
 def _rate_of_a_bristle_in_the_plane(law: Any, memory: Any, k: int, w: complex) -> complex:
@@ -40,7 +45,7 @@ def _bristle_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
 
 
 rate_of = by_law(_bristle_rate, _bristle_rate, lambda law, memory, k, w: law.rate(w, memory, k))
-"""rate_of(law, memory, k, w): the rate of the k-th memory at slip velocity w; a bristle law remembers one."""
+"""rate_of(law, memory, k, w): rate of the k-th memory at slip velocity w; a bristle law has one memory."""
 
 
 def _friction_of_a_bristle_in_the_plane(law: Any, memory: Any, moving: Any, w: complex) -> complex:
@@ -68,7 +73,8 @@ def _bristle_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
 friction_of = by_law(
     _bristle_friction, _bristle_friction, lambda law, memory, moving, w: law.friction(w, memory, moving)
 )
-"""friction_of(law, memory, moving, w): the friction coefficient at a memory that changes at these rates."""
+"""friction_of(law, memory, moving, w): friction coefficient of a memory that changes at the rates
+``moving``."""
 
 
 # --- the advance of one bristle -----------------------------------------------------------------------------------
@@ -79,14 +85,14 @@ NEARBY = 1e-6
 
 @inner
 def _decay(law: Any, v: Any, z: Any) -> float:
-    """a of z' = v - a z: the decay rate of the deflection z under slip v, from the rate of the law."""
+    """Return the decay rate a of z' = v - a z, of the deflection z under slip v, from the rate of the law."""
     lost = v - law.rate(v, z)
     return (lost * z.conjugate()).real / (z * z.conjugate()).real
 
 
 @inner
 def _after(law: Any, h: float, v: Any, at: Any, z: Any) -> Any:
-    """z after the time h with a constant, that of the deflection ``at`` (an exponential step)."""
+    """Return z after the time h with constant a, that of the deflection ``at`` (an exponential step)."""
     # For z = 0 the quotient that defines a is undefined: it is evaluated at a small deflection along the slip.
     if length(at) == 0.0:
         at = (NEARBY * min(h, law.largest_deflection() / length(v))) * v
@@ -97,14 +103,14 @@ def _after(law: Any, h: float, v: Any, at: Any, z: Any) -> Any:
 
 @inner
 def _within(radius: float, z: Any) -> Any:
-    """The deflection, or the nearest one of magnitude ``radius``."""
+    """Return the deflection, or the nearest one of magnitude ``radius`` where it is larger."""
     size = length(z)
     return (radius / size) * z if size > radius else z
 
 
 @inner
 def _moved(law: Any, h: float, v: Any, z: Any) -> Any:
-    """The deflection after the time h: exact for laws with an exact path, else of order two in h."""
+    """Return the deflection after the time h: exact for laws with an exact path, else of order two in h."""
     if length(v) * h == 0.0:
         return z
     if law.exact_path():
@@ -125,7 +131,8 @@ def _carried_in_the_plane(law: Any, h: float, v: complex, z: complex) -> complex
 
 
 advance_bristle = by_dimension(lambda law, h, v, z: _moved(law, h, v, z), _carried_in_the_plane)
-"""advance_bristle(law, h, v, z): the deflection after slip velocity v for the time h, in the law's planar form."""
+"""advance_bristle(law, h, v, z): deflection after slip velocity v for the time h, in the law's planar
+form."""
 
 
 @inner
@@ -141,7 +148,7 @@ def _caught_in_the_plane(law: Any, z: complex) -> complex:
 
 
 project_to_yield = by_dimension(lambda law, z: _yielded(law, z), _caught_in_the_plane)
-"""project_to_yield(law, z): the deflection, projected onto the yield surface if a step has left it outside."""
+"""project_to_yield(law, z): deflection, projected onto the yield surface if a step has left it outside."""
 
 
 # --- a contact of constant stiffness under a changing load ---------------------------------------------------------
@@ -149,8 +156,11 @@ project_to_yield = by_dimension(lambda law, z: _yielded(law, z), _caught_in_the_
 
 @inner
 def resistance_at_share(law: Any, w: Any, z: Any, n: float) -> Any:
-    """Rate of one bristle and friction coefficient where the normal load is n times its mean, and the contact has the
-    stiffness and damping of the mean: the law, per unit normal load, sees z/n."""
+    """Return rate of one bristle and friction coefficient at n times the mean normal load, at constant
+    stiffness.
+
+    The contact has the stiffness and damping of the mean load: the law, per unit normal load, sees z/n.
+    """
     bent = project_to_yield(law, z / n)
     rate = rate_of(law, (bent,), 0, w)
     return rate, friction_of(law, (bent,), (rate / n,), w)
@@ -158,7 +168,7 @@ def resistance_at_share(law: Any, w: Any, z: Any, n: float) -> Any:
 
 @inner
 def advance_at_share(law: Any, h: float, w: Any, z: Any, n: float) -> Any:
-    """Its deflection after slip velocity w for the time h."""
+    """Return the deflection of such a bristle after slip velocity w for the time h."""
     return n * advance_bristle(law, h / n, w, project_to_yield(law, z / n))
 
 
@@ -167,7 +177,7 @@ TANH, SQUARE_ROOT, ARCTAN = 0.0, 1.0, 2.0
 
 @inner
 def share(shape: float, u: float) -> float:
-    """phi(u): the share of the sliding friction that acts at a speed of u widths, u >= 0."""
+    """Return phi(u), the share of the sliding friction that acts at a speed of u widths, u >= 0."""
     if shape == TANH:
         return math.tanh(u)
     if shape == SQUARE_ROOT:
@@ -177,7 +187,10 @@ def share(shape: float, u: float) -> float:
 
 @inner
 def friction(problem: Any, w: Any) -> Any:
-    """Coefficient along the slip velocity w; the problem has ``law``, ``width`` and ``shape``."""
+    """Return the smoothed coefficient, along the slip velocity w.
+
+    The problem has ``law``, ``width`` and ``shape``.
+    """
     speed = length(w)
     if speed == 0.0:
         return 0.0 * w

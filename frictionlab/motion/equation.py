@@ -1,10 +1,11 @@
-"""The equation of motion: what pushes, presses and carries the mass at an instant; slip, acceleration, force at rest.
+"""Equation of motion: loads, normal load and belt at an instant; slip, acceleration, force at rest.
 
-Every map, march and reading of energies calls these functions. Load, normal load and belt are functions of time here
-and nowhere else: each in its group below, with the rates, bounds and integrals that the time at rest asks for. The
-first of two functions is for a body on which one sine is all that changes in time, the second for one that is
-``varying``, within the piece between two corners that holds. ``body`` may be the numbers of a prescribed slip, too,
-for the belt. Maps follow the deviation (y, u = y') from the body's harmonic reference.
+Every map, every march and every reading of energies calls these functions. Only here are load, normal load
+and belt functions of time: each has its group below, with the rates, bounds and integrals that the time at
+rest needs. Where two functions are given for one name, the first is for a body on which one sine is all that
+changes in time. The second is for a ``varying`` body, within the current piece between two corners. Functions
+of the belt also accept the numbers of a prescribed slip as ``body``. Maps follow the deviation (y, u = y')
+from the harmonic reference motion of the body.
 """
 
 from __future__ import annotations
@@ -42,17 +43,17 @@ from frictionlab.scene.varying import PER_PIECE, Course, Packed
 linear_force = fast(_plain.restoring_force)
 _bent_force = fast(compilable(_plain.bent_force))
 restoring_force = by_springs(_plain.restoring_force, _bent_force)
-"""restoring_force(body, x, v): of springs and dashpots, per unit mass."""
+"""restoring_force(body, x, v): force of springs and dashpots, per unit mass."""
 dissipated = by_springs(
     lambda body, x, v: linear_force(body, 0.0 * v, v),
     lambda body, x, v: _bent_force(body, x, v) - _bent_force(body, x, 0.0 * v),
 )
-"""dissipated(body, x, v): of dashpots alone."""
+"""dissipated(body, x, v): force of the dashpots alone, per unit mass."""
 slopes_at = by_springs(lambda body, x, v: body, _plain.bent_slopes)
-"""slopes_at(body, x, v): the linear body beside this motion, where ``restoring_force`` is that of small changes."""
+"""slopes_at(body, x, v): linear body whose ``restoring_force`` is that of small changes of this motion."""
 span = fast(_plain.span)
 planar = inner(compilable(_plain.in_the_plane))
-"""The body of a mass in the plane."""
+"""planar(body): numbers of a body on the line as those of a mass in the plane."""
 
 
 class Instant(NamedTuple):
@@ -65,13 +66,13 @@ class Instant(NamedTuple):
 
 @inner
 def instant_at(body: Any, tau: float) -> Instant:
-    """The instant; a body is whatever has a frequency."""
+    """Return the instant at time tau; ``body`` is any record with a frequency."""
     angle = body.frequency * tau
     return Instant(tau, math.sin(angle), math.cos(angle))
 
 
 START = Instant(0.0, 0.0, 1.0)
-"""tau = 0, where whatever does not change may be asked for."""
+"""Instant tau = 0, at which constants are evaluated."""
 
 
 # --- the load -----------------------------------------------------------------------------------------------------
@@ -80,13 +81,15 @@ load = by_variation(
     lambda body, now: body.load_sine * now.sine + body.load_cosine * now.cosine,
     lambda body, now: wave_at(body.varying.table, body.varying.load, body.varying.begins, now.tau),
 )
-"""load(body, now): what drives the mass; on the line a number, in the plane x1 + i x2.
+"""load(body, now): driving force on the mass; on the line a number, in the plane x1 + i x2.
 
-Not ``fast``: less what the reference balances it is zero to the last bit where that is all of it."""
+Not ``fast``: where the reference balances all of the load, the difference must be zero to the last bit."""
 
 
 def _rates_of_one_sine(body: Any, now: Instant) -> Any:
-    """What it is a quarter and half of a period later."""
+    """Return both derivatives: omega times the load a quarter of a period later, minus omega^2 times the
+    load.
+    """
     later = Instant(now.tau + 0.5 * math.pi / body.frequency, now.cosine, -now.sine)
     return body.frequency * load(body, later), -(body.frequency**2) * load(body, now)
 
@@ -109,11 +112,13 @@ def _curvature_of_one_sine(body: Any) -> float:
 load_curvature = by_variation(
     _curvature_of_one_sine, lambda body: wave_bound(body.varying.table, body.varying.load, 2)
 )
-"""load_curvature(body): a bound on the second derivative of the load, at any time."""
+"""load_curvature(body): bound on the second derivative of the load, at any time."""
 
 
 def _impulse_of_one_sine(body: Any, start: float, end: float) -> Any:
-    """Its value half way, less the more of a period is passed."""
+    """Return the length of the interval times the load half way, times sin(a)/a with half the angle passed as
+    a.
+    """
     half_angle = 0.5 * body.frequency * (end - start)
     mean = math.sin(half_angle) / half_angle if half_angle > 0.0 else 1.0
     return (end - start) * (mean * load(body, instant_at(body, 0.5 * (start + end))))
@@ -124,7 +129,7 @@ def _impulse_of_waves(body: Any, start: float, end: float) -> Any:
 
 
 load_impulse = by_variation(_impulse_of_one_sine, _impulse_of_waves)
-"""load_impulse(body, start, end): the integral of the load."""
+"""load_impulse(body, start, end): integral of the load."""
 
 
 # --- the normal load ----------------------------------------------------------------------------------------------
@@ -137,7 +142,7 @@ def _varying_load(body: Any, now: Instant) -> float:
 
 
 normal_load = by_variation(lambda body, now: body.normal_load, _varying_load)
-"""normal_load(body, now): what presses the mass on the belt: friction is this times its coefficient."""
+"""normal_load(body, now): force that presses the mass on the belt; friction is this times its coefficient."""
 
 
 def _varying_share(body: Any, now: Instant) -> float:
@@ -149,24 +154,24 @@ def _varying_share(body: Any, now: Instant) -> float:
 
 
 load_share = by_variation(lambda body, now: 1.0, _varying_share)
-"""load_share(body, now): the normal load over its mean."""
+"""load_share(body, now): normal load over its mean."""
 
 normal_load_rate = by_variation(
     lambda body, now: 0.0,
     lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 1),
 )
-"""normal_load_rate(body, now): its derivative."""
+"""normal_load_rate(body, now): derivative of the normal load."""
 
 normal_load_bend = by_variation(
     lambda body, now: 0.0,
     lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 2),
 )
-"""normal_load_bend(body, now): its second derivative."""
+"""normal_load_bend(body, now): second derivative of the normal load."""
 
 normal_load_curvature = by_variation(
     lambda body: 0.0, lambda body: wave_bound(body.varying.table, body.varying.normal_load, 2)
 )
-"""normal_load_curvature(body): a bound on its second derivative, at any time."""
+"""normal_load_curvature(body): bound on the second derivative of the normal load, at any time."""
 
 
 # --- the belt -----------------------------------------------------------------------------------------------------
@@ -177,25 +182,25 @@ def _vibrating_speed(body: Any, belt_speed: float, now: Instant) -> Any:
 
 
 belt_velocity = by_variation(lambda body, belt_speed, now: belt_speed, _vibrating_speed)
-"""belt_velocity(body, belt_speed, now): of the belt; belt_speed: its mean, along x1."""
+"""belt_velocity(body, belt_speed, now): velocity of the belt; belt_speed: its mean, along x1."""
 
 belt_acceleration = by_variation(
     lambda body, belt_speed, now: 0.0,
     lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 1),
 )
-"""belt_acceleration(body, belt_speed, now): derivative of its velocity."""
+"""belt_acceleration(body, belt_speed, now): derivative of the belt's velocity."""
 
 belt_jerk = by_variation(
     lambda body, belt_speed, now: 0.0,
     lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 2),
 )
-"""belt_jerk(body, belt_speed, now): derivative of its acceleration."""
+"""belt_jerk(body, belt_speed, now): derivative of the belt's acceleration."""
 
 belt_snap = by_variation(
     lambda body, belt_speed, now: 0.0,
     lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 3),
 )
-"""belt_snap(body, belt_speed, now): derivative of its jerk."""
+"""belt_snap(body, belt_speed, now): derivative of the belt's jerk."""
 
 
 def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
@@ -208,7 +213,7 @@ belt_path = by_variation(
     lambda body, belt_speed, start, end: (end - start) * belt_velocity(body, belt_speed, START),
     _vibrating_path,
 )
-"""belt_path(body, belt_speed, start, end): how far the belt goes between two times of one piece."""
+"""belt_path(body, belt_speed, start, end): distance that the belt travels between two times of one piece."""
 
 
 def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
@@ -220,16 +225,16 @@ belt_path_integral = by_variation(
     lambda body, belt_speed, start, end: 0.5 * (end - start) * belt_path(body, belt_speed, start, end),
     _integral_of_vibrating_path,
 )
-"""belt_path_integral(body, belt_speed, start, end): the integral of the way it has gone since the start."""
+"""belt_path_integral(body, belt_speed, start, end): integral of the distance travelled since the start."""
 
 belt_advance = by_variation(
     lambda body, belt_speed: belt_path(body, belt_speed, 0.0, span(body)),
     lambda body, belt_speed: span(body) * belt_speed,
 )
-"""belt_advance(body, belt_speed): how far the belt goes in a span; a vibration leads nowhere."""
+"""belt_advance(body, belt_speed): distance that the belt travels in a span; its vibration adds nothing."""
 
 belt_swing = by_variation(lambda body: 0.0, lambda body: body.varying.whole.belt_swing)
-"""belt_swing(body): how much faster or slower than its mean the belt goes at most."""
+"""belt_swing(body): largest difference between the belt's speed and its mean."""
 
 
 # --- pieces between corners ---------------------------------------------------------------------------------------
@@ -242,12 +247,12 @@ def _pieces_of_a_span(body: Any) -> int:
 
 
 pieces_of = by_variation(lambda body: 1, _pieces_of_a_span)
-"""pieces_of(body): how many pieces one span of the body has; within a piece everything is smooth in time."""
+"""pieces_of(body): number of pieces in one span of the body; within a piece everything is smooth in time."""
 
 
 @inner
 def _edge(varying: Any, k: int) -> float:
-    """When the k-th piece since the start begins."""
+    """Return the time at which the k-th piece since the start begins."""
     pieces, first = varying.whole.pieces, varying.whole.edges
     return k // pieces * varying.table[first + pieces] + varying.table[first + k % pieces]
 
@@ -258,12 +263,12 @@ def _piece_between_corners(body: Any, k: int) -> Any:
 
 
 piece_ends = by_variation(lambda body, k: (0.0, span(body)), _piece_between_corners)
-"""piece_ends(body, k): when the k-th piece of a span begins, and when it ends."""
+"""piece_ends(body, k): times at which the k-th piece of a span begins and ends."""
 
 
 @inner
 def _course_on_line(varying: Any, course: Course, place: int) -> Course:
-    """The function on the line whose numbers are there."""
+    """Return the function of time whose line, value and slope, stands at this place of the table."""
     value = number_at(varying.table, place, course.value)
     slope = number_at(varying.table, place + 2, course.value)
     return Course(course.first, course.terms, value, slope)
@@ -271,7 +276,7 @@ def _course_on_line(varying: Any, course: Course, place: int) -> Course:
 
 @inner
 def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
-    """The body with another span, and other functions of time."""
+    """Return the body with another span and other functions of time."""
     return BodyNumbers(
         body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
         body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
@@ -296,7 +301,7 @@ def _body_of_piece(body: BodyNumbers, k: int) -> BodyNumbers:
 
 
 in_piece = by_variation(lambda body, k: body, _body_of_piece)
-"""in_piece(body, k): the body as the k-th piece of its span has it."""
+"""in_piece(body, k): body with the functions of time that hold in the k-th piece of its span."""
 
 
 def _body_at(body: BodyNumbers, tau: float) -> BodyNumbers:
@@ -308,7 +313,7 @@ def _body_at(body: BodyNumbers, tau: float) -> BodyNumbers:
 
 
 body_at = by_variation(lambda body, tau: body, _body_at)
-"""body_at(body, tau): the body as the piece at this time has it."""
+"""body_at(body, tau): body with the functions of time that hold in the piece at this time."""
 
 
 def _with_bare_table(body: Any) -> Any:
@@ -326,40 +331,47 @@ def _with_bare_table(body: Any) -> Any:
 
 
 bare = by_variation(lambda body: body, _with_bare_table)
-"""bare(body): the body with a bare pointer in the place of the table, which lives as long as what Python holds."""
+"""bare(body): body with a bare pointer in place of the table. The memory lives as long as the array that
+Python holds."""
 
 quickest_of = by_variation(lambda body: body.frequency, lambda body: body.varying.whole.quickest)
-"""quickest_of(body): the highest circular frequency of all that changes in time."""
+"""quickest_of(body): highest circular frequency of all functions of time."""
 
 
 # --- the motion ---------------------------------------------------------------------------------------------------
 
 
 SLIP_ROUNDING = 1e-15
-"""A slip below this share of the velocity it is a difference of is rounding, and has no direction."""
+"""Relative size below which slip is rounding and has no direction, as share of the velocities it is a
+difference of."""
 
 
 @fast
 def slip(body: Any, belt_speed: float, now: Instant, v: Any) -> Any:
-    """Slip velocity: of the mass against the belt."""
+    """Return the slip velocity: velocity of the mass minus that of the belt."""
     return v - belt_velocity(body, belt_speed, now)
 
 
 @fast
 def acceleration_under(body: BodyNumbers, push: Any, pressed: float, x: Any, v: Any, rub: Any) -> Any:
-    """Acceleration of the mass under a load and a normal load that are known; rub: coefficient of friction."""
+    """Return the acceleration of the mass under a known load and normal load; rub: coefficient of
+    friction.
+    """
     return push - restoring_force(body, x, v) - pressed * rub
 
 
 @fast
 def acceleration(body: BodyNumbers, now: Instant, x: Any, v: Any, rub: Any) -> Any:
-    """Acceleration of the mass; rub: coefficient of friction."""
+    """Return the acceleration of the mass; rub: coefficient of friction."""
     return acceleration_under(body, load(body, now), normal_load(body, now), x, v, rub)
 
 
 @inner
 def mean_friction(impulse: Any, time: float) -> Any:
-    """The mean coefficient, positive where the belt drags the mass along x1, from the integral of what resists."""
+    """Return the mean coefficient from the integral of the resisting friction, over the time.
+
+    It is positive where the belt drags the mass along x1.
+    """
     return -impulse / time
 
 
@@ -391,13 +403,13 @@ def _held_against_relaxing(body: BodyNumbers, belt_speed: float, now: Instant, x
 holding_force = by_relaxing(
     lambda body, belt_speed, now, x: _held_by_friction(body, belt_speed, now, x), _held_against_relaxing
 )
-"""holding_force(body, belt_speed, now, x): the force of friction that keeps a mass at x with the belt, its rate and
-the rate of that."""
+"""holding_force(body, belt_speed, now, x): force of friction that keeps a mass at x at rest on the belt, its
+first and its second derivative."""
 
 _belt_bound = by_variation(
     lambda body, order: 0.0, lambda body, order: wave_bound(body.varying.table, body.varying.belt, order)
 )
-"""_belt_bound(body, order): on this derivative of the belt's velocity, at any time."""
+"""_belt_bound(body, order): bound on the derivative of this order of the belt's velocity, at any time."""
 
 
 def _turning_of_bends(body: BodyNumbers, x: Any, v: Any, a: Any) -> Any:
@@ -407,14 +419,17 @@ def _turning_of_bends(body: BodyNumbers, x: Any, v: Any, a: Any) -> Any:
 
 
 _turning = by_springs(lambda body, x, v, a: 0.0, _turning_of_bends)
-"""_turning(body, x, v, a): second derivative of the restoring force of a motion along which slopes do not change."""
+"""_turning(body, x, v, a): second derivative of the restoring force less that of constant slopes, caused by
+the change of the slopes along the motion."""
 
 look_ahead = by_springs(lambda body: 1e300, lambda body: 0.25 / quickest_of(body))
-"""look_ahead(body): the time at rest within which ``holding_curvature`` at a position holds."""
+"""look_ahead(body): time at rest within which ``holding_curvature`` at a position is valid."""
 
 
 def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
-    """By the largest sizes of position, velocity and its derivatives within the time that is looked ahead."""
+    """Bound the share of bends in the curvature, by the largest position and derivatives within
+    ``look_ahead``.
+    """
     bends, v = body.bends, abs(belt_speed) + belt_swing(body)
     most, a, jerk = abs(x.real) + v * look_ahead(body), _belt_bound(body, 1), _belt_bound(body, 2)
     first, second = abs(bends.dashpot_1), abs(bends.dashpot_2)
@@ -438,7 +453,10 @@ _curvature_of_relaxing = by_relaxing(lambda body, belt_speed: 0.0, _bound_of_rel
 
 @inner
 def holding_curvature(body: BodyNumbers, belt_speed: float, x: Any) -> float:
-    """A bound on the second derivative of that force, of a mass that is at x now, when relaxing forces are known."""
+    """Return a bound on the second derivative of ``holding_force``, for a mass at x at the present time.
+
+    Relaxing forces must be known at that time.
+    """
     springs = (body.stiffness_mean + abs(body.stiffness_split)) * _belt_bound(body, 1)
     dashpots = (body.damping_mean + abs(body.damping_split)) * _belt_bound(body, 2)
     relaxing = _curvature_of_relaxing(body, belt_speed)
@@ -454,7 +472,7 @@ def holding_curvature(body: BodyNumbers, belt_speed: float, x: Any) -> float:
 
 GAUSS = np.array([0.0, 0.5384693101056831, 0.906179845938664])
 GAUSS_WEIGHTS = np.array([0.5688888888888889, 0.47862867049936647, 0.23692688505618908])
-"""Of five nodes, those from the middle on."""
+"""Weights of Gauss quadrature with five nodes; nodes and weights from the middle on."""
 
 
 @inner
@@ -464,7 +482,10 @@ def _bent_spring(body: BodyNumbers, belt_speed: float, start: float, tau: float,
 
 
 def _impulse_of_bends(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
-    """Dashpots by the way, springs by Gauss: exact on a belt that does not vibrate, else to rounding."""
+    """Integrate dashpots as functions of the path, springs by Gauss quadrature.
+
+    This is exact on a belt that does not vibrate, else accurate to rounding.
+    """
     bends, first, last = body.bends, x.real, (x + belt_path(body, belt_speed, start, end)).real
     half, third = 0.5 * bends.dashpot_1, bends.dashpot_2 / 3.0
     impulse = (half + third * last) * last * last - (half + third * first) * first * first
@@ -481,12 +502,12 @@ def _impulse_of_bends(body: BodyNumbers, belt_speed: float, start: float, end: f
 
 _parts = by_variation(lambda body, lasts: 1, lambda body, lasts: 1 + int(8.0 * quickest_of(body) * lasts))
 _bent_impulse = by_springs(lambda body, belt_speed, start, end, x: 0.0 * x, _impulse_of_bends)
-"""_bent_impulse(body, belt_speed, start, end, x): the integral of what bends add to the restoring force."""
+"""_bent_impulse(body, belt_speed, start, end, x): integral of the nonlinear part of the restoring force."""
 
 
 @inner
 def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
-    """Integral of that force; x at the start."""
+    """Return the integral of ``holding_force``; x: position at the start."""
     travel = belt_path(body, belt_speed, start, end) + 0.0 * x
     positions = (end - start) * x + belt_path_integral(body, belt_speed, start, end)
     first, last = instant_at(body, start), instant_at(body, end)
@@ -498,7 +519,7 @@ def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: flo
 
 @inner
 def resting_friction(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
-    """Integral of friction at rest, in shares of the mean normal load."""
+    """Return the integral of friction at rest, in shares of the mean normal load."""
     return holding_impulse(body, belt_speed, start, end, x) / body.normal_load
 
 
@@ -506,7 +527,7 @@ def resting_friction(body: BodyNumbers, belt_speed: float, start: float, end: fl
 
 
 class Flow(NamedTuple):
-    """A law and a body on a belt; the side of slip on the line; sine and cosine at the anchor time."""
+    """Law and body on a belt, side of slip on the line, sine and cosine at the anchor time."""
 
     law: Any
     body: BodyNumbers
@@ -519,7 +540,9 @@ class Flow(NamedTuple):
 
 @fast
 def turned(problem: Any, tau: float) -> Any:
-    """Sine and cosine of Omega*tau from those at the anchor, at most one radian away (Taylor, to rounding)."""
+    """Return sine and cosine of Omega*tau from those at the anchor, at most one radian away (Taylor, to
+    rounding).
+    """
     angle = problem.body.frequency * (tau - problem.anchor)
     q = angle * angle
     cosine = 1.0 - q / 2.0 * (
@@ -538,28 +561,28 @@ def turned(problem: Any, tau: float) -> Any:
 
 @fast
 def instant_near(problem: Any, tau: float) -> Instant:
-    """The instant, at most one radian from the anchor of the problem."""
+    """Return the instant at time tau, at most one radian from the anchor of the problem."""
     sine, cosine = turned(problem, tau)
     return Instant(tau, sine, cosine)
 
 
 @inner
 def anchored(law: Any, body: BodyNumbers, belt_speed: float, side: float, tau: float) -> Flow:
-    """The problem with its anchor at this time."""
+    """Return the problem with its anchor at this time."""
     angle = body.frequency * tau
     return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
 
 
 @inner
 def reference_position(body: BodyNumbers, tau: float) -> Any:
-    """Of the friction-free response."""
+    """Return the position of the friction-free response."""
     angle = body.frequency * tau
     return body.reference_sine * math.sin(angle) + body.reference_cosine * math.cos(angle)
 
 
 @fast
 def reference_velocity(body: BodyNumbers, sine: float, cosine: float) -> Any:
-    """Its derivative."""
+    """Return the velocity of the friction-free response."""
     return body.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
 
 
@@ -567,28 +590,33 @@ free_sine = by_springs(lambda body: body.reference_sine, lambda body: body.refer
 free_cosine = by_springs(
     lambda body: body.reference_cosine, lambda body: body.reference_cosine + body.bends.cosine
 )
-"""free_sine(body), free_cosine(body): of the motion without friction, about where bodies are not linear."""
+"""free_sine(body), free_cosine(body): amplitudes of the motion without friction, approximate for bodies that
+are not linear."""
 
 
 @inner
 def swing_of(body: BodyNumbers) -> float:
-    """The speed of the friction-free response against the belt's mean; 1 where it has no bound."""
+    """Return the speed of the friction-free response against the belt's mean; 1 where it has no bound."""
     swing = body.frequency * math.hypot(abs(free_sine(body)), abs(free_cosine(body))) + belt_swing(body)
     return swing if swing > 0.0 else 1.0
 
 
 def _pushed_away(body: BodyNumbers, x: Any) -> bool:
-    """Where springs push outward with a million times the force by which the linear one would pull back."""
+    """Check whether springs push outward with a million times the force by which the linear one would pull
+    back.
+    """
     x1 = x.real
     return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 < -1e6 * body.stiffness_mean
 
 
 runs_away = by_springs(lambda body, x: False, _pushed_away)
-"""runs_away(body, x): whether a mass there never comes back."""
+"""runs_away(body, x): whether a mass at x never comes back."""
 
 
 def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
-    """On the side on which springs stretch to hold the force, the first place where there are several."""
+    """Return the equilibrium on the side where springs stretch to hold the force, the first if there are
+    several.
+    """
     missing = force - linear_force(body, 0.0, v)
     side, low = math.copysign(1.0, missing), 0.0
     high = abs(missing) / (body.stiffness_mean + body.stiffness_split)
@@ -616,50 +644,51 @@ def _linear_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
 
 
 equilibrium = by_springs(_linear_equilibrium, _bent_equilibrium)
-"""equilibrium(body, force, v): where springs along x1, and dashpots at this velocity, hold a force."""
+"""equilibrium(body, force, v): position at which springs along x1, and dashpots at this velocity, hold a
+force."""
 
 
 @inner
 def balanced_load(body: BodyNumbers, now: Instant) -> Any:
-    """The force that the reference motion takes."""
+    """Return the force that the reference motion takes."""
     return body.balanced_sine * now.sine + body.balanced_cosine * now.cosine
 
 
 @fast
 def unbalanced_load(body: BodyNumbers, now: Instant) -> Any:
-    """What of the load drives the deviation."""
+    """Return the part of the load that drives the deviation."""
     return load(body, now) - balanced_load(body, now)
 
 
 @inner
 def unbalanced_rate(body: BodyNumbers, now: Instant) -> Any:
-    """Its derivative."""
+    """Return the derivative of ``unbalanced_load``."""
     rate, _bend = load_rates(body, now)
     return rate - body.frequency * (body.balanced_sine * now.cosine - body.balanced_cosine * now.sine)
 
 
 @fast
 def deviation_acceleration(body: BodyNumbers, now: Instant, y: Any, u: Any, rub: Any) -> Any:
-    """Acceleration of the deviation; rub: coefficient of friction."""
+    """Return the acceleration of the deviation; rub: coefficient of friction."""
     return acceleration_under(body, unbalanced_load(body, now), normal_load(body, now), y, u, rub)
 
 
 @fast
 def deviation_slip(problem: Any, now: Instant, u: Any) -> Any:
-    """Slip velocity of a mass whose deviation has this velocity."""
+    """Return the slip velocity of a mass whose deviation has velocity u."""
     v = u + reference_velocity(problem.body, now.sine, now.cosine)
     return slip(problem.body, problem.belt_speed, now, v)
 
 
 @fast
 def deviation_slip_rate(problem: Any, now: Instant, a: Any) -> Any:
-    """Derivative of slip where the deviation has this acceleration."""
+    """Return the derivative of the slip velocity where the deviation has acceleration a."""
     rate = a + reference_acceleration(problem.body, now.sine, now.cosine)
     return rate - belt_acceleration(problem.body, problem.belt_speed, now)
 
 
 def _friction_in_lanes(problem: Flow, w: Any) -> Any:
-    """Of a law whose vector is that of ``FrictionLaw``: along the slip."""
+    """Return the friction of a law with the vector of ``FrictionLaw``, along the slip."""
     speed = length(w)
     return (friction_by_lane(problem.law, speed) / speed) * w
 
@@ -673,7 +702,10 @@ _friction = by_dimension(
 
 @fast_embedded
 def rates(problem: Flow, tau: float, y: Any, u: Any) -> Any:
-    """Acceleration of the deviation, and friction of a law without memory in shares of the mean normal load."""
+    """Return the acceleration of the deviation and the friction of a law without memory.
+
+    Friction is in shares of the mean normal load.
+    """
     now = instant_near(problem, tau)
     rub = _friction(problem, deviation_slip(problem, now, u))
     return deviation_acceleration(problem.body, now, y, u, rub), load_share(problem.body, now) * rub
@@ -681,11 +713,11 @@ def rates(problem: Flow, tau: float, y: Any, u: Any) -> Any:
 
 @fast
 def slip_at(problem: Any, tau: float, u: Any) -> Any:
-    """Slip velocity near the anchor of a problem; u: velocity of the deviation."""
+    """Return the slip velocity near the anchor of a problem; u: velocity of the deviation."""
     return deviation_slip(problem, instant_near(problem, tau), u)
 
 
 @fast
 def slip_rate(problem: Any, tau: float, a: Any) -> Any:
-    """Its derivative; a: acceleration of the deviation."""
+    """Return the derivative of the slip velocity near the anchor; a: acceleration of the deviation."""
     return deviation_slip_rate(problem, instant_near(problem, tau), a)

@@ -1,4 +1,4 @@
-"""Where the slip on a line turns inside a step: its zero, and its minimum where it comes close to one."""
+"""Events of slip on the line within a step: its zero, and its minimum where it comes close to zero."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from frictionlab.scene.body import BodyNumbers
 
 @inner
 def dips(w0: Any, rate0: Any, w1: Any, rate1: Any, h: float) -> bool:
-    """Whether the slip comes much closer to rest between two nodes than at either (cubic Hermite)."""
+    """Check whether slip comes much closer to rest between two nodes than at either (cubic Hermite)."""
     close = 0.0625 * min(w0.real * w0.real + w0.imag * w0.imag, w1.real * w1.real + w1.imag * w1.imag)
     closest = close
     for s in (0.25, 0.5, 0.75):
@@ -22,20 +22,22 @@ def dips(w0: Any, rate0: Any, w1: Any, rate1: Any, h: float) -> bool:
 
 @fast
 def reference_acceleration(body: BodyNumbers, sine: float, cosine: float) -> Any:
-    """Second derivative of the harmonic reference."""
+    """Return the second derivative of the harmonic reference."""
     return -(body.frequency**2) * (body.reference_sine * sine + body.reference_cosine * cosine)
 
 
 def slip_events(step: Any, rates: Any, slip: Any, slip_rate: Any) -> Any:
-    """``stop`` and ``lowest`` for a stepper and the rates it is bound to (numba caches no kernel handed a function).
+    """Make ``stop`` and ``lowest`` for a stepper and its rates (numba caches no kernel that is handed a
+    function).
 
-    rates(problem, tau, end) is the acceleration at the end of a step, slip(problem, tau, u) and slip_rate(problem,
-    tau, a) are of the deviation; problem.side is the sign of the slip before it turns.
+    rates(problem, tau, end) is the acceleration at the end of a step. slip(problem, tau, u) and
+    slip_rate(problem, tau, a) are functions of the deviation's velocity and acceleration. problem.side is the
+    sign of the slip before it turns.
     """
 
     @inner
     def rise(problem: Any, tau: float, end: Any) -> float:
-        """Rate of the slip in its direction before the event."""
+        """Return the rate of the slip in its direction before the event."""
         a = rates(problem, tau, end)
         return problem.side * slip_rate(problem, tau, a)
 
@@ -45,7 +47,10 @@ def slip_events(step: Any, rates: Any, slip: Any, slip_rate: Any) -> Any:
 def _stop_at_zero(step: Any, slip: Any, rise: Any) -> Any:
     @inner
     def stop(problem: Any, tau: float, state: Any, low: float, high: float) -> Any:
-        """The step at whose end slip is zero, between two with slip before and none after (safeguarded Newton)."""
+        """Return the step at whose end slip is zero, and that end (safeguarded Newton).
+
+        low, high: steps with slip before its zero, and after it.
+        """
         h = high
         end = step(problem, tau, state, h)
         for _ in range(60):
@@ -70,7 +75,9 @@ def _stop_at_zero(step: Any, slip: Any, rise: Any) -> Any:
 def _slowest(step: Any, rise: Any) -> Any:
     @inner
     def lowest(problem: Any, tau: float, state: Any, before: float, h: float) -> float:
-        """Step at which slip is slowest inside one whose slip falls first, at rate ``before``, and rises last."""
+        """Return the step at which slip is slowest, within one where slip first falls, at rate ``before``,
+        then rises.
+        """
         low, high, middle = 0.0, h, h
         at_low, at_high = before, 0.0
         for _ in range(50):

@@ -1,14 +1,11 @@
-"""Vectors, matrices and real-linear maps of a few numbers, inside kernels.
+"""Vectors, matrices and real-linear maps of a few numbers, for kernels.
 
-A vector as one number on the line and as two in the plane: how arrays of real numbers keep them.
+Arrays of real numbers hold a vector as one number on the line and as two in the plane. The last argument, or
+the number itself, tells which: it is a float on the line and complex in the plane.
 
-The last argument, or the number itself, is a float on the line and a complex number in the plane.
-
-Real-linear maps of one direction or two: a number on the line, a pair of complex numbers in the plane.
-
-In the plane a map takes x to a x + b conj(x): every real 2 x 2 matrix is one such pair, and the pairs multiply,
-invert and act by a few products of complex numbers. What a function returns on the line is a float, in the plane the
-pair (a, b). An array of maps keeps each in two places, the second unused on the line.
+A real-linear map of x is a number on the line and a pair of complex numbers (a, b) in the plane, where it
+takes x to a x + b conj(x). Every real 2 x 2 matrix is one such pair, and pairs multiply, invert and act by a
+few products of complex numbers. An array of maps holds each in two places, the second unused on the line.
 """
 
 from __future__ import annotations
@@ -46,7 +43,7 @@ unit = by_dimension(
 
 @inner
 def norm(z: Any) -> float:
-    """The Euclidean norm."""
+    """Return the Euclidean norm."""
     total = 0.0
     for value in z:
         total += value * value
@@ -65,7 +62,7 @@ def multiply(matrix: Any, z: Any, out: Any) -> None:
 
 @inner
 def add_product(factor: float, left: Any, right: Any, out: Any) -> None:
-    """Add so many times the product of two square matrices to ``out``, another one."""
+    """Add ``factor`` times the product of two square matrices to ``out``, which is neither of them."""
     n = left.shape[0]
     for row in range(n):
         for k in range(n):
@@ -75,7 +72,9 @@ def add_product(factor: float, left: Any, right: Any, out: Any) -> None:
 
 @inner
 def invert(matrix: Any, inverse: Any) -> bool:
-    """Gauss-Jordan elimination with row pivots; False where the matrix is singular to rounding."""
+    """Write the inverse by Gauss-Jordan elimination with row pivots; return False for a matrix singular to
+    rounding.
+    """
     n = matrix.shape[0]
     work = matrix.copy()
     for row in range(n):
@@ -108,7 +107,10 @@ def invert(matrix: Any, inverse: Any) -> bool:
 
 @inner
 def solve_linear(matrix: Any, right: Any) -> None:
-    """Gaussian elimination with row pivots, in place of both; the result is not finite for a singular matrix."""
+    """Solve a linear system by Gaussian elimination with row pivots, in place of both arguments.
+
+    The result is not finite for a singular matrix.
+    """
     n = right.size
     for pivot in range(n):
         best = pivot
@@ -133,7 +135,7 @@ def solve_linear(matrix: Any, right: Any) -> None:
 
 @inner
 def eliminate(matrix: Any, right: Any) -> None:
-    """Gaussian elimination with partial pivoting: ``right`` [n, columns] becomes the solution, in place."""
+    """Solve for ``right`` [n, columns] in place, by Gaussian elimination with partial pivoting."""
     n, columns = matrix.shape[0], right.shape[1]
     # Row pivots: an implicit step over a stiff layer has rows of very different size.
     for k in range(n):
@@ -163,14 +165,16 @@ def eliminate(matrix: Any, right: Any) -> None:
 
 
 SQUARINGS = 6
-"""Of a matrix, for the bound on its spectral radius: the 64th root of its 64th power's norm is at most a few percent
-too large."""
+"""Squarings of a matrix for the bound on its spectral radius. The 64th root of the norm of its 64th power is
+at most a few percent too large."""
 
 
 @inner
 def radius_bound(matrix: Any) -> float:
-    """A number no smaller than the largest modulus of the eigenvalues (Gelfand's formula); infinite or NaN where
-    powers overflow."""
+    """Return a number no smaller than the largest modulus of the eigenvalues (Gelfand's formula).
+
+    It is infinite or NaN where powers overflow.
+    """
     n = matrix.shape[0]
     power, square = matrix.copy(), np.empty((n, n))
     for _ in range(SQUARINGS):
@@ -208,7 +212,7 @@ block = by_dimension(
     lambda blocks, place, zero: blocks[2 * place],
     lambda blocks, place, zero: (blocks[2 * place], blocks[2 * place + 1]),
 )
-"""block(blocks, place, zero): the map kept at a place of an array."""
+"""block(blocks, place, zero): map at a place of an array."""
 
 
 def _keep_on_the_line(blocks: Any, place: int, matrix: float, zero: float) -> None:
@@ -220,7 +224,7 @@ def _keep_in_the_plane(blocks: Any, place: int, matrix: Block, zero: complex) ->
 
 
 keep = by_dimension(_keep_on_the_line, _keep_in_the_plane)
-"""keep(blocks, place, matrix, zero): put a map into an array."""
+"""keep(blocks, place, matrix, zero): write a map to a place of an array."""
 
 
 def _applied_in_the_plane(matrix: Block, x: complex) -> complex:
@@ -229,7 +233,7 @@ def _applied_in_the_plane(matrix: Block, x: complex) -> complex:
 
 
 apply = by_dimension(lambda matrix, x: matrix * x, _applied_in_the_plane)
-"""apply(matrix, x): the image of a vector."""
+"""apply(matrix, x): image of a vector."""
 
 
 def _product_in_the_plane(left: Block, right: Block, zero: complex) -> Block:
@@ -239,18 +243,18 @@ def _product_in_the_plane(left: Block, right: Block, zero: complex) -> Block:
 
 
 product = by_dimension(lambda left, right, zero: left * right, _product_in_the_plane)
-"""product(left, right, zero): the map that applies the right one first."""
+"""product(left, right, zero): map that applies the right one first."""
 
 add = by_dimension(
     lambda left, right, zero: left + right, lambda left, right, zero: (left[0] + right[0], left[1] + right[1])
 )
-"""add(left, right, zero): the sum of two maps."""
+"""add(left, right, zero): sum of two maps."""
 
 scale = by_dimension(
     lambda factor, matrix, zero: factor * matrix,
     lambda factor, matrix, zero: (factor * matrix[0], factor * matrix[1]),
 )
-"""scale(factor, matrix, zero): a multiple of a map."""
+"""scale(factor, matrix, zero): multiple of a map."""
 
 
 def _inverse_in_the_plane(matrix: Block, zero: complex) -> Block:
@@ -261,16 +265,16 @@ def _inverse_in_the_plane(matrix: Block, zero: complex) -> Block:
 
 
 inverse = by_dimension(lambda matrix, zero: 1.0 / matrix, _inverse_in_the_plane)
-"""inverse(matrix, zero): not finite where the map is singular."""
+"""inverse(matrix, zero): inverse map; not finite where the map is singular."""
 
 diagonal = by_dimension(
     lambda mean, split, zero: mean + split,
     lambda mean, split, zero: (complex(mean, 0.0), complex(split, 0.0)),
 )
-"""diagonal(mean, split, zero): x1 times mean + split, x2 times mean - split."""
+"""diagonal(mean, split, zero): map that multiplies x1 by mean + split and x2 by mean - split."""
 
 multiple = by_dimension(lambda x, zero: x, lambda x, zero: (complex(x.real, x.imag), complex(0.0, 0.0)))
-"""multiple(x, zero): the map that multiplies by a number."""
+"""multiple(x, zero): map that multiplies by a number."""
 
 
 def _from_columns_in_the_plane(first: complex, second: complex) -> Block:
@@ -279,4 +283,5 @@ def _from_columns_in_the_plane(first: complex, second: complex) -> Block:
 
 
 from_columns = by_dimension(lambda first, second: first, _from_columns_in_the_plane)
-"""from_columns(first, second): the map that takes 1 to the first and i to the second, which the line leaves out."""
+"""from_columns(first, second): map that takes 1 to the first and i to the second, which the line leaves
+out."""

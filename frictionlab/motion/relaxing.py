@@ -1,8 +1,8 @@
 """Springs that relax, beside those of the body along x1: forces q' = stiffness x1' - rate q, each by itself.
 
-As all that is linear they are followed as what deviates from the friction-free response. In the norm of energy a
-force is measured by the root of its spring's stiffness. Maps by Rodas5P hold them as rows of a state; maps by DOP853
-as one number, of eight lanes where there are eight.
+These springs are linear, so maps follow the deviation of their forces from the friction-free response. In the
+norm of energy a force is divided by the root of its spring's stiffness. Maps by Rodas5P hold the forces as
+rows of a state. Maps by DOP853 hold them as one number, of eight lanes where there are eight.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from frictionlab.scene.body import BodyNumbers, Relaxing
 from frictionlab.scene.varying import PER_WAVE
 
 elements_of = by_relaxing(lambda body: 0, lambda body: len(body.relaxing.rate))
-"""elements_of(body): how many there are, a constant to the compiler."""
+"""elements_of(body): number of relaxing springs, a constant to the compiler."""
 
 hardest = by_relaxing(lambda body: 0.0, lambda body: body.relaxing.hardest)
-"""hardest(body): the stiffness of all together."""
+"""hardest(body): stiffness of all relaxing springs together."""
 
 lasting = by_relaxing(lambda body: 0.0, lambda body: body.relaxing.lasting)
-"""lasting(body): all together as a dashpot."""
+"""lasting(body): damping coefficient of all relaxing springs together, as one dashpot."""
 
 stable_step = by_relaxing(lambda body: 1e300, lambda body: 4.0 / body.relaxing.fastest)
-"""stable_step(body): for which DOP853 is stable on the fastest, however little the mass feels it."""
+"""stable_step(body): longest step for which DOP853 is stable on the fastest relaxation, even if the mass
+hardly feels it."""
 
 along_x1 = by_dimension(lambda force, example: force, lambda force, example: complex(force, 0.0))
 """along_x1(force, example): force along x1, float or complex as the example is."""
@@ -44,7 +45,8 @@ def _total(body: BodyNumbers, rows: Any, first: int) -> float:
 
 
 relaxing_force = by_relaxing(lambda body, rows, first: 0.0, _total)
-"""relaxing_force(body, rows, first): of all together, from what the rows of a state hold from the first on."""
+"""relaxing_force(body, rows, first): sum of the forces, which stand in the rows of a state from ``first``
+on."""
 
 
 def _rate_of(body: BodyNumbers, k: int, q: Any, u: Any) -> float:
@@ -52,10 +54,10 @@ def _rate_of(body: BodyNumbers, k: int, q: Any, u: Any) -> float:
 
 
 relaxing_rate = by_relaxing(lambda body, k, q, u: 0.0, _rate_of)
-"""relaxing_rate(body, k, q, u): of one force, of a motion at velocity u."""
+"""relaxing_rate(body, k, q, u): rate of the k-th force q, of a motion at velocity u."""
 
 energy_unit = by_relaxing(lambda body, k: 1.0, lambda body, k: 1.0 / math.sqrt(body.relaxing.stiffness[k]))
-"""energy_unit(body, k): what one force is multiplied by in the norm of energy."""
+"""energy_unit(body, k): factor of the k-th force in the norm of energy."""
 
 
 # --- as one number --------------------------------------------------------------------------------------------------
@@ -72,7 +74,7 @@ def _with_springs(body: BodyNumbers, relaxing: Relaxing) -> BodyNumbers:
 
 @fast
 def with_force(body: BodyNumbers, force: Any, since: float) -> BodyNumbers:
-    """The body which knows its relaxing forces at a time."""
+    """Return the body with these relaxing forces, known at the time ``since``."""
     old = body.relaxing
     relaxing = Relaxing(old.stiffness, old.rate, force, since, old.hardest, old.lasting, old.fastest)
     return _with_springs(body, relaxing)
@@ -94,7 +96,8 @@ def _of_one_number(body: BodyNumbers) -> BodyNumbers:
 
 
 in_one_number = by_relaxing(lambda body: body, _of_one_number)
-"""in_one_number(body): the body with its relaxing springs so."""
+"""in_one_number(body): body with the numbers of its relaxing springs, and their forces, each as one
+number."""
 
 
 def _read(body: BodyNumbers, state: Any) -> Any:
@@ -105,7 +108,8 @@ def _read(body: BodyNumbers, state: Any) -> Any:
 
 
 read_forces = by_relaxing(lambda body, state: 0.0, _read)
-"""read_forces(body, state): as one number, from a state; the body has its springs as tuples."""
+"""read_forces(body, state): relaxing forces of a state as one number; the body holds its springs as
+tuples."""
 
 
 def _write(body: BodyNumbers, state: Any, force: Any) -> None:
@@ -115,12 +119,14 @@ def _write(body: BodyNumbers, state: Any, force: Any) -> None:
 
 
 write_forces = by_relaxing(lambda body, state, force: None, _write)
-"""write_forces(body, state, force): the other way round."""
+"""write_forces(body, state, force): write relaxing forces, given as one number, into a state."""
 
 
 @fast
 def _of_a_sine(body: BodyNumbers, frequency: float, sine: float, cosine: float, tau: float) -> Any:
-    """Forces under the velocity sine*sin(frequency tau) + cosine*cos(frequency tau), gone on for ever."""
+    """Return the forces under the velocity sine*sin(frequency tau) + cosine*cos(frequency tau) that never
+    began.
+    """
     stiffness, rate, angle = body.relaxing.stiffness, body.relaxing.rate, frequency * tau
     s, c = math.sin(angle), math.cos(angle)
     turned = sine * (rate * s - frequency * c) + cosine * (rate * c + frequency * s)
@@ -129,7 +135,7 @@ def _of_a_sine(body: BodyNumbers, frequency: float, sine: float, cosine: float, 
 
 @fast
 def reference_force(body: BodyNumbers, tau: float) -> Any:
-    """Of the friction-free response, as one number."""
+    """Return the relaxing forces of the friction-free response, as one number."""
     omega = body.frequency
     sine, cosine = -omega * body.reference_cosine.real, omega * body.reference_sine.real
     return _of_a_sine(body, omega, sine, cosine, tau)
@@ -140,12 +146,14 @@ def _carrying(body: BodyNumbers, force: Any, tau: float) -> BodyNumbers:
 
 
 carrying = by_relaxing(lambda body, force, tau: body, _carrying)
-"""carrying(body, force, tau): the body which knows, from those of its deviation, its relaxing forces at this time."""
+"""carrying(body, force, tau): body that knows its relaxing forces at this time, from those of its
+deviation."""
 
 deviating_force = by_relaxing(
     lambda body, tau: 0.0, lambda body, tau: body.relaxing.force - reference_force(body, tau)
 )
-"""deviating_force(body, tau): those of its deviation, from the ones the body knows at this time."""
+"""deviating_force(body, tau): relaxing forces of the deviation, from those that the body knows at this
+time."""
 
 
 # --- at rest on the belt --------------------------------------------------------------------------------------------
@@ -168,7 +176,7 @@ _gone_on = by_variation(
     lambda body, belt_speed, tau: (belt_speed * body.relaxing.stiffness) / body.relaxing.rate,
     _on_a_varying_belt,
 )
-"""_gone_on(body, belt_speed, tau): forces on a mass at rest for ever."""
+"""_gone_on(body, belt_speed, tau): relaxing forces on a mass that has been at rest on the belt for ever."""
 
 
 @fast
@@ -189,7 +197,8 @@ at_rest_until = by_relaxing(
     lambda body, belt_speed, tau: body,
     lambda body, belt_speed, tau: with_force(body, _forces_at_rest(body, belt_speed, tau), tau),
 )
-"""at_rest_until(body, belt_speed, tau): the body which knows its forces then, at rest since it last did."""
+"""at_rest_until(body, belt_speed, tau): body that knows its relaxing forces at this time, after rest on the
+belt since the time at which it last knew them."""
 
 
 def _holding(body: BodyNumbers, belt_speed: float, tau: float, velocity: float, pushed: float) -> Any:
@@ -200,8 +209,8 @@ def _holding(body: BodyNumbers, belt_speed: float, tau: float, velocity: float, 
 
 
 held_back = by_relaxing(lambda body, belt_speed, tau, velocity, pushed: (0.0, 0.0, 0.0), _holding)
-"""held_back(body, belt_speed, tau, velocity, pushed): the force at rest, its rate and the rate of that; velocity and
-acceleration are the belt's along x1."""
+"""held_back(body, belt_speed, tau, velocity, pushed): relaxing force on a mass at rest on the belt, its first
+and its second derivative; velocity, pushed: velocity and acceleration of the belt along x1."""
 
 
 def _impulse_at_rest(body: BodyNumbers, belt_speed: float, start: float, end: float, travel: float) -> float:
@@ -210,14 +219,16 @@ def _impulse_at_rest(body: BodyNumbers, belt_speed: float, start: float, end: fl
 
 
 held_back_impulse = by_relaxing(lambda body, belt_speed, start, end, travel: 0.0, _impulse_at_rest)
-"""held_back_impulse(body, belt_speed, start, end, travel): its integral; travel: of the belt along x1."""
+"""held_back_impulse(body, belt_speed, start, end, travel): integral of this force; travel: distance that the
+belt travels along x1."""
 
 
 @fast
 def held_back_curvature(body: BodyNumbers, velocity: float, pushed: float) -> float:
-    """A bound on its second derivative from the time on at which the body knows its forces.
+    """Return a bound on the second derivative of this force, from the time on at which the body knows its
+    forces.
 
-    velocity: of the belt then, along x1; pushed: a bound on its acceleration.
+    velocity: of the belt at that time, along x1; pushed: bound on its acceleration.
     """
     rate = body.relaxing.rate
     falls = rate * (body.relaxing.stiffness * velocity - rate * body.relaxing.force)

@@ -1,4 +1,4 @@
-"""Sums of sines and a straight line as kernels see them: value, derivatives, bounds, integrals."""
+"""Sums of sines and a straight line for kernels: value, derivatives, bounds, integrals."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ number_at = by_dimension(
 
 @inner
 def _turned(table: Any, place: int, angle: float, example: Any) -> Any:
-    """The wave whose numbers begin at this place, at this angle."""
+    """Return the wave whose numbers begin at this place of the table, at this angle."""
     sine, cosine = number_at(table, place + 1, example), number_at(table, place + 3, example)
     return sine * math.sin(angle) + cosine * math.cos(angle)
 
 
 @inner
 def wave_at(table: Any, course: Course, begins: float, tau: float) -> Any:
-    """The value; begins: when the line has its value."""
+    """Return the value at time tau; begins: time at which the line has ``course.value``."""
     total = course.value + (tau - begins) * course.slope
     for j in range(course.terms):
         place = course.first + PER_WAVE * j
@@ -35,7 +35,7 @@ def wave_at(table: Any, course: Course, begins: float, tau: float) -> Any:
 
 @inner
 def wave_rate(table: Any, course: Course, tau: float, order: int) -> Any:
-    """The derivative of this order, 1 or higher."""
+    """Return the derivative of this order, 1 or higher."""
     total = course.slope if order == 1 else 0.0 * course.slope
     for j in range(course.terms):
         # every derivative is the wave a quarter of a period later
@@ -47,7 +47,7 @@ def wave_rate(table: Any, course: Course, tau: float, order: int) -> Any:
 
 @inner
 def wave_bound(table: Any, course: Course, order: int) -> float:
-    """A bound on the size of the derivative of this order, 1 or higher, at any time."""
+    """Return a bound on the size of the derivative of this order, 1 or higher, at any time."""
     total = abs(course.slope) if order == 1 else 0.0
     for j in range(course.terms):
         place = course.first + PER_WAVE * j
@@ -61,7 +61,7 @@ def wave_bound(table: Any, course: Course, order: int) -> float:
 
 @inner
 def wave_impulse(table: Any, course: Course, begins: float, start: float, end: float) -> Any:
-    """The integral."""
+    """Return the integral from start to end; begins: time at which the line has ``course.value``."""
     lasts, middle = end - start, 0.5 * (start + end)
     total = lasts * (course.value + (middle - begins) * course.slope)
     for j in range(course.terms):
@@ -74,7 +74,7 @@ def wave_impulse(table: Any, course: Course, begins: float, start: float, end: f
 
 @inner
 def wave_path_integral(table: Any, course: Course, begins: float, start: float, end: float) -> Any:
-    """The integral of the integral since the start."""
+    """Return the integral, from start to end, of the integral since the start."""
     lasts = end - start
     total = 0.5 * lasts * lasts * (course.value + (start + lasts / 3.0 - begins) * course.slope)
     for j in range(course.terms):

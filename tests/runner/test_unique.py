@@ -73,7 +73,7 @@ def test_starts_are_told_with_their_distance_and_time() -> None:
     # at rest on the belt: x = 0, v = 5; sliding: on the free orbit of amplitude 50 about 4, then at x = 4 - 50
     assert float(told[2]) == pytest.approx((46.0**2 + 5.0**2) ** 0.5, rel=2e-3)
     assert float(told[3]) >= 3
-    assert many.reason.startswith("tested: 18 starts up to ")
+    assert many.reason.startswith("tested: 19 starts up to ")
     assert "unique: " not in many.model + two.model
 
 

@@ -232,17 +232,23 @@ def resting_starts(scene: Scene, law: FrictionLaw, count: int = PLACES_ON_THE_BE
 
 def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
     """Thrown off sliding that never reverses, by half and by the whole swing of the loads, to all sides."""
-    (x, v), law = problem.place(scene.belt_speed, None), problem.law
-    if law.count() == 0:  # with memory that place is shifted by friction already
-        shift = problem.mass.normal_load * law.sliding_friction(abs(scene.belt_speed))
-        x += math.copysign(shift, scene.belt_speed)
+    x, v = _sliding_on(problem, scene)
     turns, swing = [math.pi * (k + 0.5) / 2.0 for k in range(4)], force_swing(scene)
     thrown = [cmath.rect(share * swing, turn) for share in (0.5, 1.0) for turn in turns]
     along = [
         Initial(x=x.real + each.real, velocity=v.real + each.imag, x2=x.imag, velocity2=v.imag)
         for each in thrown
     ]
-    return moving_across(scene, law, along)
+    return moving_across(scene, problem.law, along)
+
+
+def _sliding_on(problem: PeriodicProblem, scene: Scene) -> tuple[complex, complex]:
+    """Position and velocity of the friction-free motion about steady sliding: a state wherever it never reverses."""
+    (x, v), law = problem.place(scene.belt_speed, None), problem.law
+    if law.count() == 0:  # with memory that place is shifted by friction already
+        shift = problem.mass.normal_load * law.sliding_friction(abs(scene.belt_speed))
+        x += math.copysign(shift, scene.belt_speed)
+    return x, v
 
 
 def force_swing(scene: Scene) -> float:
@@ -288,9 +294,12 @@ def all_starts(
     problem: PeriodicProblem, scene: Scene, more: int = 0
 ) -> tuple[list[Initial | None], list[Initial]]:
     """Those that are followed always, and those that follow where the first ones agree; more: at rest on the belt."""
-    law = problem.law
+    law, (x, v) = problem.law, _sliding_on(problem, scene)
+    # with memory no start at all is this one, with the memory of sliding
+    smooth = None if law.count() else Initial(x=x.real, velocity=v.real, x2=x.imag, velocity2=v.imag)
+    first = starts(scene, law)
     others = [*resting_starts(scene, law), *thrown_starts(problem, scene)]
-    return starts(scene, law), [*others, *resting_starts(scene, law, more)]
+    return [*first, *([] if smooth in first else [smooth])], [*others, *resting_starts(scene, law, more)]
 
 
 class FollowedStarts:

@@ -1,8 +1,7 @@
 """Base classes of friction laws: a frozen record of parameters whose methods state the physics.
 
-The label of a law: the name of its rows in a table, beside its parameters and no part of its physics.
-
-Methods of a law that take one slip speed or, called in Python, an array of them.
+A law may have a label, which names its rows in a table; the label stands beside its parameters and is no part
+of its physics. Methods of a law that take one slip speed also take an array of them if called in Python.
 
 The same methods run interpreted (with the record itself as ``self``) and compiled (with a named tuple of its
 numbers as ``self``), and on the line (``float`` slip velocity) and in the plane (``complex``: x1 + i x2).
@@ -34,12 +33,17 @@ from frictionlab.values.quantities import (
 from frictionlab.values.units import in_units_of_law, unit_of_dimension
 
 _LABEL = "_label"
-"""Where a law holds it: no field and no private attribute of pydantic, so that equal laws are equal and every law is
-made as it was."""
+"""Key under which a law holds its label.
+
+It is no field and no private attribute of pydantic, so that equal laws are equal whatever their labels, and a
+law is made in the same way with and without a label."""
 
 
 class Labelled(Record):
-    """A record that may have a ``label``, one line of text, beside its values. Raises ValueError for another."""
+    """Record that may have a ``label``, one line of text, beside its values.
+
+    Raises ValueError for any other label.
+    """
 
     if TYPE_CHECKING:  # type checkers take the signature from the fields
         label: str = ""
@@ -60,24 +64,24 @@ class Labelled(Record):
 
         @property
         def label(self) -> str:
-            """The name of its rows; '' where none was given: its registered name then."""
+            """Name of the law's rows in a table; '' if none was given: they then have its registered name."""
             return vars(self).get(_LABEL, "")
 
     def __repr_args__(self) -> Any:
-        """The values, and the label where there is one."""
+        """Yield the values, and the label if there is one."""
         yield from super().__repr_args__()
         if self.label:
             yield "label", self.label
 
 
 OF_SPEED = "sliding_friction", "sliding_vector"
-"""The methods whose one argument is a speed or a slip velocity."""
+"""Methods whose one argument is a speed or a slip velocity."""
 
 
 class OfEach:
-    """A method of one number that its law, once made, also takes arrays for; a class has the method itself.
+    """Method of one number that an instance of its law also calls with arrays; its class has the plain method.
 
-    So compiled code, which asks the class, is what it was.
+    Compiled code asks the class and so gets the plain method.
     """
 
     def __init__(self, method: FunctionType) -> None:
@@ -88,16 +92,19 @@ class OfEach:
 
 
 def as_written(member: Any) -> Any:
-    """A method as its class defines it; anything else as it is."""
+    """Return a method as its class defines it, and anything else unchanged."""
     return member.py_func if isinstance(member, OfEach) else member
 
 
-def _of_each(method: FunctionType, law: Any, given: Any) -> Any:
-    if isinstance(given, int | float | complex) or np.ndim(given) == 0:
-        return method(law, given)
-    numbers = np.asarray(given)
-    found = [method(law, number) for number in numbers.ravel().tolist()]
-    return np.array(found, dtype=numbers.dtype if numbers.dtype.kind == "c" else float).reshape(numbers.shape)
+def _of_each(method: FunctionType, law: Any, speeds: Any) -> Any:
+    """Call a method of a law with a number, or with each number of an array."""
+    if isinstance(speeds, int | float | complex) or np.ndim(speeds) == 0:
+        return method(law, speeds)
+    numbers = np.asarray(speeds)
+    coefficients = [method(law, number) for number in numbers.ravel().tolist()]
+    return np.array(coefficients, dtype=numbers.dtype if numbers.dtype.kind == "c" else float).reshape(
+        numbers.shape
+    )
 
 
 def accept_arrays(law: type) -> None:
@@ -122,31 +129,45 @@ __all__ = [
 
 
 Number = float | int | tuple[float, ...]
-"""A parameter as compiled code receives it: a number, a whole number, or a tuple of numbers to index."""
+"""Parameter as compiled code receives it: a number, a whole number, or a tuple of numbers to index."""
 
 
 class FrictionLaw(Labelled, ABC):
-    """A law of dry friction: the friction coefficient, per unit normal load, that resists slip.
+    """Law of dry friction: the friction coefficient, per unit normal load, that resists slip.
 
-    ``in_words`` is what figures call it, its label where left out.
-    The docstring of a law names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one
-    string, except those already in frictionlab's bibliography; a source without an entry is cited as written.
-    ``expected_failures`` maps each check of the conformance battery that the law must fail to the reason.
-    ``memory_kind`` says what friction depends on beside slip: nothing, the deflection of one bristle, or several
-    deflections or scalars; no method solves a law that declares none of them. ``compliant``: whether one bristle has
-    a stiffness and a presliding length.
+    Base class of every law. Its numbers are in the units of the scene. In a scene in SI units they are in SI
+    units and may be text with a unit: ``fl.Dahl(mu=0.3, presliding_length="1 um")``. The methods
+    ``sliding_friction`` and ``sliding_vector`` of a law also take arrays of any shape. The docstring of a law
+    names its sources as in "Source: Dahl (1968)".
 
-    In a scene in SI units its numbers are in them, and may be text with a unit: ``fl.Dahl(mu=0.3,
-    presliding_length="1 um")``.
+    Parameters
+    ----------
+    label : str, default ""
+        One line of visible text that names the law in tables and figures, beside its values. Keyword of every
+        law, no field.
 
+    Attributes
+    ----------
+    in_words : str
+        Name of the law in figures; its label is used if this is left out.
+    bibtex : str
+        BibTeX entries of the sources as one string, except those already in frictionlab's bibliography. A
+        source without an entry is cited as written.
+    expected_failures : mapping of str to str
+        Each check of the conformance battery that the law must fail, with the reason.
+    memory_kind : {"undeclared", "none", "bristle", "deflections", "scalars"}
+        Memory of the law: what friction depends on beside slip, which is nothing, the deflection of one
+        bristle, or several deflections or scalars. No method solves a law that declares none of them.
+    compliant : bool
+        True if the law has one bristle with a stiffness and a presliding length.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> isinstance(fl.Dahl(mu=0.4, stiffness=40), fl.FrictionLaw)
     True
     >>> fl.Dahl(mu=0.4, stiffness=40).sliding_friction(3.0)
     0.4
-
-    ``sliding_friction`` and ``sliding_vector`` of a law take arrays, too, of any shape:
-
     >>> fl.Stribeck(mu_kinetic=0.2, mu_static=0.4, curve="hyperbolic").sliding_friction([0, 1, 3])
     array([0.4 , 0.3 , 0.25])
     """
@@ -164,103 +185,237 @@ class FrictionLaw(Labelled, ABC):
     @model_validator(mode="before")
     @classmethod
     def _texts_with_units(cls, data: Any) -> Any:
-        """Numbers in SI units in the place of texts such as ``1 um``."""
+        """Replace texts such as ``1 um`` by numbers in SI units."""
         if not isinstance(data, Mapping) or not any(isinstance(value, str) for value in data.values()):
             return data
-        units = {name: unit_of_dimension(each) for name, each in dimensions(cls).items()}
+        units = {name: unit_of_dimension(dimension) for name, dimension in dimensions(cls).items()}
         texts = {name: value for name, value in data.items() if name in units and isinstance(value, str)}
         return {**data, **{name: in_units_of_law(text, name, units) for name, text in texts.items()}}
 
     @classmethod
     def _in_order(cls) -> list[str]:
-        """Coefficients first, since those of the contact are inherited by several laws."""
+        """Return the names of the fields with coefficients first, since several laws inherit those of the contact."""
         return sorted(super()._in_order(), key=lambda name: not cls.model_fields[name].is_required())
 
     @abstractmethod
     def sliding_friction(self, speed: float) -> float:
-        """Friction coefficient [-] at steady sliding with this speed (>= 0) [scene length / scene time]."""
+        """Compute the friction coefficient [-] in steady sliding.
+
+        Parameters
+        ----------
+        speed : float, >= 0
+            Slip speed [scene length / scene time].
+
+        Returns
+        -------
+        float
+            Friction coefficient [-], >= 0.
+        """
 
     def sliding_vector(self, v: complex) -> complex:
-        """Friction coefficient [-] at steady sliding, along the slip velocity ``v`` (not zero).
+        """Compute the friction coefficient [-] in steady sliding, as a vector along the slip velocity.
 
-        Isotropic: it points along ``v``. ``float`` in, ``float`` out; ``complex`` in, ``complex`` out.
+        It is isotropic: it points along ``v``.
+
+        Parameters
+        ----------
+        v : float or complex, not zero
+            Slip velocity [scene velocity]; ``complex`` in the plane (x1 + i x2).
+
+        Returns
+        -------
+        float or complex
+            Friction coefficient times the direction of ``v`` [-]; ``float`` for ``float``, ``complex`` for
+            ``complex``.
         """
         speed = abs(v)
         return (self.sliding_friction(speed) / speed) * v  # one division fewer than along v / speed
 
     def under_load(self, normal_load: float) -> Self:
-        """The same law per unit of this normal load [scene force]: parameters of the contact become per unit load."""
+        """Return the same law per unit of a normal load: parameters of the contact become parameters per unit load.
+
+        Parameters
+        ----------
+        normal_load : float, > 0
+            Normal load [scene force].
+
+        Returns
+        -------
+        FrictionLaw
+            Law of the same class; the law itself if it has no parameter of the contact.
+        """
         return self
 
     def count(self) -> int:
-        """The number of memories."""
+        """Return the number of memories.
+
+        Returns
+        -------
+        int
+            Count of the numbers that the law remembers; 0 if it remembers nothing.
+        """
         return 0
 
     def elastic_deflection(self) -> float:
-        """Deflection [scene length] up to which it follows the slip in every direction: the contact is elastic."""
+        """Return the deflection up to which the contact is elastic: it follows the slip in every direction.
+
+        Returns
+        -------
+        float
+            Deflection [scene length]; 0 if not declared.
+        """
         return 0.0
 
     def planar_form(self) -> Literal["vectorial", "rotated", "per-axis"]:
-        """How the law of one direction extends to the plane; as a law of vectors where it does not say."""
+        """Return how the law of one direction extends to the plane.
+
+        Returns
+        -------
+        {"vectorial", "rotated", "per-axis"}
+            ``vectorial``, a law of vectors, if not declared.
+        """
         return "vectorial"
 
     def no_vector_form(self) -> str:
-        """Why ``vectorial`` has no meaning for this law, as a sentence; empty where it has one."""
+        """Return why the form ``vectorial`` has no meaning for this law.
+
+        Returns
+        -------
+        str
+            Reason as a sentence; '' if the form has a meaning.
+        """
         return ""
 
     def damps_across(self, speed: float) -> bool:
-        """Whether friction never does positive work on a motion across the slip, at slip speeds up to this.
+        """Check that friction never does positive work on a motion across the slip.
 
-        Spring and contact across then only lose energy, and without a load across the belt x2 decays.
+        Spring and contact across the slip then only lose energy, and without a load across the belt x2
+        decays.
+
+        Parameters
+        ----------
+        speed : float, >= 0
+            Largest slip speed [scene velocity] for which this is asked.
+
+        Returns
+        -------
+        bool
+            True if this holds at all slip speeds up to ``speed``.
         """
         return self.planar_form() != "rotated"
 
     def obeys(self, check: str) -> bool:
-        """Tell whether the law claims to pass a check of the battery: ``expected_failures`` does not name it.
+        """Check whether the law claims to pass a check of the battery: ``expected_failures`` does not name it.
 
-        A shortcut that rests on a property of laws asks for the check of that property: ``law.obeys("oddness")``.
+        A shortcut that rests on a property of laws asks for the check of that property:
+        ``law.obeys("oddness")``.
+
+        Parameters
+        ----------
+        check : str
+            Name of the check.
+
+        Returns
+        -------
+        bool
+            True if the law claims to pass it.
         """
         return check not in self.expected_failures
 
     def constant_sliding_friction(self) -> bool:
-        """Whether ``sliding_friction`` is the same number at every speed."""
+        """Check whether ``sliding_friction`` is the same number at every speed.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def steepest_fall(self) -> float:
-        """Largest rate at which sliding friction falls as speed grows [1/scene velocity], rest included.
+        """Return the largest rate at which sliding friction falls as speed grows, rest included.
 
-        If damping outweighs it, a law without memory has exactly one steady state. Infinite where friction may jump.
+        If damping outweighs it, a law without memory has exactly one steady state.
+
+        Returns
+        -------
+        float
+            Rate [1/scene velocity], >= 0; infinite if friction may jump.
         """
         return 0.0 if self.constant_sliding_friction() else math.inf
 
     def monotone(self) -> bool:
-        """Whether friction never falls as slip grows: (T(v) - T(w)).(v - w) >= 0, rest included.
+        """Check whether friction never falls as slip grows: (T(v) - T(w)).(v - w) >= 0, rest included.
 
         With constant normal load and damping the steady state is then unique (Leine & van de Wouw, 2008).
+
+        Returns
+        -------
+        bool
+            False if not declared.
         """
         return False
 
     def presliding(self) -> float:
-        """The slip [scene length] within which friction turns round after a reversal: 0 where it jumps."""
+        """Return the slip within which friction reverses its sign after a reversal of slip.
+
+        Returns
+        -------
+        float
+            Slip [scene length]; 0 if friction jumps.
+        """
         return 0.0
 
     def largest_rate(self, speed: float) -> float:
-        """Largest modulus of d(rate)/d(memory) [1/scene time] at this slip speed; it limits explicit steps."""
+        """Return the largest modulus of d(rate)/d(memory); it limits explicit steps.
+
+        Parameters
+        ----------
+        speed : float, >= 0
+            Slip speed [scene velocity].
+
+        Returns
+        -------
+        float
+            Modulus [1/scene time].
+        """
         return 0.0
 
     def rate_jumps(self, directions: int) -> bool:
-        """Whether the rate of a memory may jump, in so many directions, while slip does not turn round."""
+        """Check whether the rate of a memory may jump while slip does not reverse.
+
+        Parameters
+        ----------
+        directions : int
+            1 on the line, 2 in the plane.
+
+        Returns
+        -------
+        bool
+            True if it may jump.
+        """
         return False
 
     def structure(self) -> tuple[str, ...]:
-        """The properties of the parameters that select which kernels are compiled, as words."""
+        """Return the properties of the parameters that select which kernels are compiled.
+
+        Returns
+        -------
+        tuple of str
+            Properties as words.
+        """
         return ()
 
     def numbers(self) -> dict[str, Number]:
-        """The parameters that kernels receive: every number, whole number, tuple of numbers, and every property.
+        """Return the parameters that kernels receive: numbers, whole numbers, tuples of numbers, and properties.
 
-        Optional numbers (default ``None``) are left out: only properties read them, so the kernels of a law do not
-        depend on which are given. Kernels receive a tuple as an array: use ``len`` and indices.
+        Optional numbers (default ``None``) are left out: only properties read them, so the kernels of a law
+        do not depend on which are given. Kernels receive a tuple as an array: use ``len`` and indices.
+
+        Returns
+        -------
+        dict of str to number or tuple of float
+            Values by name.
         """
         required = {name for name, field in type(self).model_fields.items() if field.default is not None}
         fields = {name: value for name, value in self if name in required and _is_number(value)}
@@ -271,10 +426,13 @@ accept_arrays(FrictionLaw)
 
 
 class SlidingLaw(FrictionLaw, ABC):
-    """A law without memory: the slip velocity alone determines friction, which is set-valued at rest.
+    """Law without memory: the slip velocity alone determines friction, which is set-valued at rest.
 
-    At rest friction is any vector up to the static coefficient; the method determines which one.
+    At rest friction is any vector up to the static coefficient; the method determines which one. A subclass
+    writes ``sliding_friction``.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Falling(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -289,35 +447,54 @@ class SlidingLaw(FrictionLaw, ABC):
     memory_kind: ClassVar[Literal["none"]] = "none"
 
     def static_friction(self) -> float:
-        """Friction coefficient [-] that slip must overcome to begin; not below ``sliding_friction(0)``."""
+        """Return the friction coefficient that must be overcome for slip to begin.
+
+        Returns
+        -------
+        float
+            Coefficient [-]; not below ``sliding_friction(0)``, which it is if not declared.
+        """
         return self.sliding_friction(0.0)
 
     def vanishes_at_rest(self) -> bool:
-        """Whether friction vanishes with slip, as that of a film of fluid does, and nothing is held at rest.
+        """Check whether friction vanishes with slip, as that of a film of fluid does; nothing is held at rest.
 
-        Dry friction does not: a law in which it does without saying so has the smoothing width of a method in it.
+        Dry friction does not vanish. The battery takes a law whose friction vanishes without this declaration
+        to have the smoothing width of a method in it.
+
+        Returns
+        -------
+        bool
+            False if not declared.
         """
         return False
 
     def steepest_fall(self) -> float:
-        """0 where friction is monotone."""
+        """Return 0 if friction is monotone, else infinity.
+
+        Returns
+        -------
+        float
+            Largest rate at which sliding friction falls as speed grows [1/scene velocity].
+        """
         return 0.0 if self.monotone() else math.inf
 
 
 def _is_number(value: object) -> bool:
+    """Check whether a value is a number or a tuple of numbers, and no boolean."""
     if isinstance(value, tuple):
-        return all(isinstance(each, float) for each in value)
+        return all(isinstance(number, float) for number in value)
     return isinstance(value, float | int) and not isinstance(value, bool)
 
 
 def _number(value: Any) -> Number:
-    """A property as kernels receive it: ``int`` and tuples keep their type, everything else becomes ``float``."""
+    """Return a property as kernels receive it: ``int`` and tuples keep their type, the others become ``float``."""
     if isinstance(value, tuple):
-        return tuple(float(each) for each in value)
+        return tuple(float(number) for number in value)
     return value if isinstance(value, int) and not isinstance(value, bool) else float(value)
 
 
 def _properties(law: type[FrictionLaw]) -> list[str]:
-    """The names of the properties of a law and of its base classes."""
+    """Return the names of the properties of a law and of its base classes."""
     own = [name for kind in law.__mro__ if issubclass(kind, FrictionLaw) for name in vars(kind)]
     return [name for name in dict.fromkeys(own) if isinstance(getattr(law, name), property)]

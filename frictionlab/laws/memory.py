@@ -1,7 +1,7 @@
 """Laws with memory: one bristle deflection, several deflections, or scalars such as the age of a contact.
 
-A law states how many numbers it remembers and the rate of each; methods keep them in an array. One source serves
-interpreted and compiled runs, on the line and in the plane.
+A law states how many numbers it remembers and the rate of each; methods keep them in an array. The same
+source serves interpreted and compiled runs, on the line and in the plane.
 """
 
 from __future__ import annotations
@@ -16,12 +16,20 @@ VECTORIAL, ROTATED, PER_AXIS = 0.0, 1.0, 2.0
 
 
 class BristleLaw(FrictionLaw, ABC):
-    """A law whose memory is one bristle deflection z [scene length]: slip changes it and friction depends on it.
+    """Law whose memory is one bristle deflection z [scene length]: slip changes z and friction depends on it.
 
-    planar: how the law of one direction extends to the plane. ``vectorial``: v and z are vectors (isotropic; Velenis
-    & Tsiotras, 2002); ``rotated``: one scalar deflection along the current slip direction (isotropic, without memory
-    of direction); ``per-axis``: one law per axis (not isotropic: its yield set is a square).
+    A subclass writes ``sliding_friction``, ``rate`` and ``friction``.
 
+    Parameters
+    ----------
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction. ``vectorial``: v and z are vectors (isotropic;
+        Velenis & Tsiotras, 2002). ``rotated``: one scalar deflection along the current slip direction
+        (isotropic, without memory of direction). ``per-axis``: one law per axis (not isotropic: its yield set
+        is a square).
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Brush(fl.BristleLaw):
     ...     mu: fl.Positive
@@ -42,89 +50,229 @@ class BristleLaw(FrictionLaw, ABC):
 
     @abstractmethod
     def rate(self, v: Any, z: Any) -> Any:
-        """dz/dtau [scene velocity] at slip velocity ``v`` and deflection ``z``: ``float`` or ``complex`` alike."""
+        """Compute the rate of the bristle deflection, dz/dtau.
+
+        Parameters
+        ----------
+        v : float or complex
+            Slip velocity [scene velocity]; ``float`` on the line, ``complex`` in the plane.
+        z : float or complex
+            Bristle deflection [scene length]; of the type of ``v``.
+
+        Returns
+        -------
+        float or complex
+            Rate [scene velocity].
+        """
 
     @abstractmethod
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Friction coefficient [-] along ``v`` that resists slip, at deflection ``z`` moving at ``dz``."""
+        """Compute the friction coefficient along ``v`` that resists slip.
+
+        Parameters
+        ----------
+        v : float or complex
+            Slip velocity [scene velocity].
+        z : float or complex
+            Bristle deflection [scene length].
+        dz : float or complex
+            Rate of ``z`` [scene velocity].
+
+        Returns
+        -------
+        float or complex
+            Friction coefficient [-].
+        """
 
     @property
     def form(self) -> float:
-        """``planar`` as a number for kernels."""
+        """Number that stands for ``planar`` in kernels."""
         return {"vectorial": VECTORIAL, "rotated": ROTATED, "per-axis": PER_AXIS}[self.planar]
 
     def count(self) -> int:
-        """One."""
+        """Return the number of memories, 1.
+
+        Returns
+        -------
+        int
+            Count.
+        """
         return 1
 
     def planar_form(self) -> Literal["vectorial", "rotated", "per-axis"]:
-        """As the parameter ``planar`` says."""
+        """Return how the law of one direction extends to the plane: the parameter ``planar``.
+
+        Returns
+        -------
+        {"vectorial", "rotated", "per-axis"}
+            Form.
+        """
         return self.planar
 
     def largest_deflection(self) -> float:
-        """Radius of the set of deflections [scene length] that no slip history leaves once inside."""
+        """Return the radius of the set of deflections that no slip history leaves once inside.
+
+        Returns
+        -------
+        float
+            Radius [scene length]; infinite if not declared.
+        """
         return math.inf
 
     def presliding(self) -> float:
-        """The presliding length [scene length]: the deflection in steady sliding at high speed."""
+        """Return the presliding length: the deflection in steady sliding at high speed.
+
+        Returns
+        -------
+        float
+            Length [scene length]; ``largest_deflection()`` if not declared.
+        """
         return self.largest_deflection()
 
     def largest_rate(self, speed: float) -> float:
-        """Largest modulus of d(rate)/dz [1/scene time] at this slip speed; it limits explicit steps."""
+        """Return the largest modulus of d(rate)/dz; it limits explicit steps.
+
+        Parameters
+        ----------
+        speed : float, >= 0
+            Slip speed [scene velocity].
+
+        Returns
+        -------
+        float
+            Modulus [1/scene time]; infinite if not declared.
+        """
         return math.inf
 
     def rate_jumps(self, directions: int) -> bool:
-        """In the plane: by axis, where unloading begins or ends, at yield."""
+        """Check whether the rate of deflection may jump while slip does not reverse.
+
+        It may in the plane: at yield, where elastic unloading begins or ends, and in the form per axis.
+
+        Parameters
+        ----------
+        directions : int
+            1 on the line, 2 in the plane.
+
+        Returns
+        -------
+        bool
+            True if it may jump.
+        """
         jumps = self.elastic_unloading() or math.isfinite(self.yield_deflection())
         return directions == 2 and (jumps or self.form == PER_AXIS)
 
     def rate_independent(self) -> bool:
-        """Whether friction depends on the path of the slip alone, not on its speed."""
+        """Check whether friction depends on the path of the slip alone, not on its speed.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def passive(self) -> bool:
-        """Whether the work of friction over any slip history is at least minus the ``stored`` work."""
+        """Check whether the work of friction over any slip history is at least minus the ``stored`` work.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def stored(self, z: Any) -> float:
-        """The recoverable work per unit normal load [scene length] of the bristle: that of a linear spring."""
+        """Compute the recoverable work of the bristle: that of a linear spring.
+
+        Parameters
+        ----------
+        z : float or complex
+            Bristle deflection [scene length].
+
+        Returns
+        -------
+        float
+            Work per unit normal load [scene length].
+        """
         return 0.5 * float((z * self.friction(0.0 * z, z, 0.0 * z).conjugate()).real)
 
     def exact_path(self) -> bool:
-        """Whether ``deflected`` is exact for slip along a straight line at whatever speed."""
+        """Check whether ``deflected`` is exact for slip along a straight line at whatever speed.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def deflected(self, z: Any, path: Any) -> Any:
-        """The deflection after slip along a straight ``path`` [scene length] from ``z``; for ``exact_path`` laws."""
+        """Compute the deflection after slip along a straight path; called only if ``exact_path`` holds.
+
+        Parameters
+        ----------
+        z : float or complex
+            Deflection before [scene length].
+        path : float or complex
+            Slip [scene length].
+
+        Returns
+        -------
+        float or complex
+            Deflection after the slip [scene length].
+        """
         return z
 
     def saturation_path(self, z: float, side: float) -> float:
-        """Length of slip in one direction (side: 1 or -1) after which friction is exactly constant.
+        """Compute the length of slip in one direction after which friction is exactly constant.
 
-        Infinite where the limit is only approached: ``deflected`` is then smooth along the whole path.
+        Parameters
+        ----------
+        z : float
+            Deflection before [scene length].
+        side : float
+            Direction of slip, 1 or -1.
+
+        Returns
+        -------
+        float
+            Length [scene length]. Infinite if the limit is only approached: ``deflected`` is then smooth
+            along the whole path.
         """
         return math.inf
 
     def elastic_unloading(self) -> bool:
-        """Whether z follows the slip wherever z.v <= 0: friction may have a corner where that begins or ends."""
+        """Check whether z follows the slip wherever z.v <= 0: friction may have a corner where that begins or ends.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def yield_deflection(self) -> float:
-        """Deflection [scene length] below which z follows the slip and which it never exceeds; infinite for none.
+        """Return the deflection below which z follows the slip and which z never exceeds.
 
-        At it and with z.v > 0, ``rate`` moves z along the circle of that radius.
+        At this deflection and with z.v > 0, ``rate`` moves z along the circle of that radius.
+
+        Returns
+        -------
+        float
+            Deflection [scene length]; infinite if there is none.
         """
         return math.inf
 
 
 def bristle_on_the_line(law: Any, v: float, z: float) -> Any:
-    """Rate of deflection and friction coefficient of a bristle law along one direction."""
+    """Compute rate of deflection and friction coefficient of a bristle law along one direction."""
     dz = law.rate(v, z)
     return dz, law.friction(v, z, dz)
 
 
 def bristle_in_the_plane(law: Any, v: complex, z: complex) -> Any:
-    """Rate of deflection and friction coefficient of a bristle law in the plane, in its ``planar`` form."""
+    """Compute rate of deflection and friction coefficient of a bristle law in the plane, in its ``planar`` form."""
     if law.form == VECTORIAL:
         dz = law.rate(v, z)
         return dz, law.friction(v, z, dz)
@@ -139,11 +287,19 @@ def bristle_in_the_plane(law: Any, v: complex, z: complex) -> Any:
 
 
 class MemoryLaw(FrictionLaw, ABC):
-    """A law whose memory is a fixed number of numbers, all of one kind.
+    """Law whose memory is a fixed number of numbers, all of one kind.
 
-    memory_kind: ``deflections`` [scene length] reverse and rotate with the slip: ``float`` on the line and
-    ``complex`` (x1 + i x2) in the plane, as the slip velocity. ``scalars`` have no direction: always ``float``.
+    A subclass writes ``count``, ``sliding_friction``, ``rate`` and ``friction``.
 
+    Attributes
+    ----------
+    memory_kind : {"deflections", "scalars"}
+        Kind of the numbers. ``deflections`` [scene length] reverse and rotate with the slip: ``float`` on the
+        line and ``complex`` (x1 + i x2) in the plane, as the slip velocity. ``scalars`` have no direction and
+        are always ``float``. ``deflections`` if left out.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class TwoSpringsInSeriesWithSliders(fl.MemoryLaw):
     ...     mu: fl.Positive
@@ -164,82 +320,231 @@ class MemoryLaw(FrictionLaw, ABC):
 
     @abstractmethod
     def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """Rate of the k-th memory [its unit/scene time] at slip velocity ``v``.
+        """Compute the rate of the k-th memory.
 
-        ``memory`` is to be indexed by 0, 1, ... and nothing more: kernels have no array, and know no length of it.
+        Parameters
+        ----------
+        v : float or complex
+            Slip velocity [scene velocity].
+        memory : sequence of float or complex
+            Memory, only to be indexed by 0, 1, ...: kernels have no array and do not know its length.
+        k : int
+            Index of the memory, from 0.
+
+        Returns
+        -------
+        float or complex
+            Rate [its unit/scene time].
         """
 
     @abstractmethod
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Friction coefficient [-] along ``v`` that resists slip, at a memory that changes at ``rates``."""
+        """Compute the friction coefficient along ``v`` that resists slip.
+
+        Parameters
+        ----------
+        v : float or complex
+            Slip velocity [scene velocity].
+        memory : sequence of float or complex
+            Memory, only to be indexed by 0, 1, ...
+        rates : sequence of float or complex
+            Rates of the memory, only to be indexed by 0, 1, ...
+
+        Returns
+        -------
+        float or complex
+            Friction coefficient [-].
+        """
 
     @property
     def turning(self) -> float:
-        """``memory_kind`` as a number for kernels: 1 for deflections, 0 for scalars."""
+        """Number that stands for ``memory_kind`` in kernels: 1 for deflections, 0 for scalars."""
         return 1.0 if self.memory_kind == "deflections" else 0.0
 
     def structure(self) -> tuple[str, ...]:
-        """Selects kernels by the kind of memory and by the count of the numbers."""
+        """Return the kind of memory and the count of its numbers, which select the kernels.
+
+        Returns
+        -------
+        tuple of str
+            Properties as words; ``stick`` among them if the law remembers stick.
+        """
         stick = ("stick",) if self.remembers_stick() else ()
         return self.memory_kind, *stick, f"{self.count()} numbers"
 
     def count(self) -> int:
-        """The number of memories."""
+        """Return the number of memories.
+
+        Returns
+        -------
+        int
+            Count of the numbers that the law remembers; 1 if not declared.
+        """
         return 1
 
     def steady(self, v: Any, k: int) -> Any:
-        """The k-th memory in steady sliding at slip velocity ``v`` (not zero); zero if the law does not define it."""
+        """Compute the k-th memory in steady sliding.
+
+        Parameters
+        ----------
+        v : float or complex, not zero
+            Slip velocity [scene velocity].
+        k : int
+            Index of the memory, from 0.
+
+        Returns
+        -------
+        float or complex
+            Memory [its unit]; zero if the law does not define it.
+        """
         return 0.0 * v
 
     def presliding(self) -> float:
-        """The shortest deflection in steady sliding [scene length]; 0 of scalars, or where none is known."""
+        """Return the shortest deflection in steady sliding.
+
+        Returns
+        -------
+        float
+            Deflection [scene length]; 0 for scalars, or if the law does not define ``steady``.
+        """
         if self.memory_kind == "scalars":
             return 0.0
         return min(abs(self.steady(1.0, k)) for k in range(self.count()))
 
     def stored(self, memory: Any) -> float:
-        """The recoverable work [scene length, per unit load] in the memory; used where a law is passive."""
+        """Compute the recoverable work in the memory; used for a law that is passive.
+
+        Parameters
+        ----------
+        memory : sequence of float or complex
+            Memory.
+
+        Returns
+        -------
+        float
+            Work per unit normal load [scene length]; 0 if not declared.
+        """
         return 0.0
 
     def yield_deflection(self, k: int) -> float:
-        """Deflection [scene length] below which the k-th moves with the slip, and which it never exceeds.
+        """Return the deflection below which the k-th memory moves with the slip, and which it never exceeds.
 
-        At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none, or where
-        a law does not say: it is then found from ``rate`` and ``steady``, if it is the same at slips of any speed.
+        At this deflection and with z.v > 0, ``rate`` moves the memory along the circle of that radius.
+
+        Parameters
+        ----------
+        k : int
+            Index of the memory, from 0.
+
+        Returns
+        -------
+        float
+            Deflection [scene length]. Infinite if there is none, or if the law does not declare it: it is
+            then found from ``rate`` and ``steady``, if it is the same at slips of any speed.
         """
         return math.inf
 
     def elastic_unloading(self) -> bool:
-        """Whether each deflection follows the slip wherever z.v <= 0; found from ``rate`` if not declared."""
+        """Check whether each deflection follows the slip wherever z.v <= 0.
+
+        Returns
+        -------
+        bool
+            False if not declared; it is then found from ``rate``.
+        """
         return False
 
     def remembers_stick(self) -> bool:
-        """Whether each deflection remembers if it sticks (it follows the slip) or slips (it moves at ``rate``)."""
+        """Check whether each deflection remembers if it sticks (it follows the slip) or slips (it moves at ``rate``).
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def breakaway(self, v: Any, k: int) -> float:
-        """Deflection [scene length] at which the k-th, sticking and loaded by slip at ``v``, begins to slip.
+        """Compute the deflection at which the k-th memory, sticking and loaded by slip, begins to slip.
 
-        Slip of a deflection ends where the slip velocity reverses, in the plane where it begins to unload it.
+        Slip of a deflection ends when the slip velocity reverses; in the plane it ends when the slip velocity
+        begins to unload the deflection.
+
+        Parameters
+        ----------
+        v : float or complex
+            Slip velocity [scene velocity] that loads the deflection.
+        k : int
+            Index of the memory, from 0.
+
+        Returns
+        -------
+        float
+            Deflection [scene length]; infinite if not declared.
         """
         return math.inf
 
     def within(self, memory: Any) -> bool:
-        """Whether the memory lies in the set that no slip history can leave."""
+        """Check whether the memory lies in the set that no slip history can leave.
+
+        Parameters
+        ----------
+        memory : sequence of float or complex
+            Memory.
+
+        Returns
+        -------
+        bool
+            True if not declared.
+        """
         return True
 
     def largest_rate(self, speed: float) -> float:
-        """Largest modulus of d(rate)/d(memory) [1/scene time] at this slip speed; infinite where none is known."""
+        """Return the largest modulus of d(rate)/d(memory); it limits explicit steps.
+
+        Parameters
+        ----------
+        speed : float, >= 0
+            Slip speed [scene velocity].
+
+        Returns
+        -------
+        float
+            Modulus [1/scene time]; infinite if not declared.
+        """
         return math.inf
 
     def rate_jumps(self, directions: int) -> bool:
-        """Of deflections it may, at yield."""
+        """Check whether the rate of a memory may jump while slip does not reverse: that of deflections may, at yield.
+
+        Parameters
+        ----------
+        directions : int
+            1 on the line, 2 in the plane.
+
+        Returns
+        -------
+        bool
+            True for deflections.
+        """
         return self.memory_kind == "deflections"
 
     def rate_independent(self) -> bool:
-        """Whether friction depends on the path of the slip alone, not on its speed."""
+        """Check whether friction depends on the path of the slip alone, not on its speed.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False
 
     def passive(self) -> bool:
-        """Whether the work of friction over any slip history is at least minus the ``stored`` work."""
+        """Check whether the work of friction over any slip history is at least minus the ``stored`` work.
+
+        Returns
+        -------
+        bool
+            False if not declared.
+        """
         return False

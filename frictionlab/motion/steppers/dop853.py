@@ -300,7 +300,7 @@ def _dense7(k: Any, extra: Any) -> Any:
 class State(NamedTuple):
     """Position, velocity, acceleration and friction coefficient at one time.
 
-    e: other numbers that are carried along, r their rates; zero where there are none.
+    e: other numbers that are integrated along with the motion; r: their rates; zero where there are none.
     """
 
     x: Any
@@ -312,7 +312,9 @@ class State(NamedTuple):
 
 
 class Step(NamedTuple):
-    """The state after a step, its two error estimates (order 5 and 3) and the integral of friction over it."""
+    """State after a step, its two error estimates (order 5 and 3) and the integral of friction over the
+    step.
+    """
 
     x: Any
     v: Any
@@ -325,7 +327,10 @@ class Step(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """Velocities, accelerations, friction coefficients and other rates of the stages 1 and 6 to 12, as summed up."""
+    """Velocities, accelerations, friction coefficients and other rates of the stages 1 and 6 to 12.
+
+    A step ends at a weighted sum of these.
+    """
 
     v: Any
     a: Any
@@ -334,7 +339,7 @@ class Stages(NamedTuple):
 
 
 class Dense(NamedTuple):
-    """A step of h as polynomials of degree 7 in the time since it began: their coefficients [8]."""
+    """Coefficients [8] of a step of h, as polynomials of degree 7 in the time since its start."""
 
     h: float
     x: Any
@@ -342,7 +347,7 @@ class Dense(NamedTuple):
 
 
 def carrying_nothing(rates: Any) -> Any:
-    """For ``stepper``, of a kernel function ``rates(problem, tau, x, v)`` = (x'', friction)."""
+    """Return rates for ``stepper`` from a kernel function ``rates(problem, tau, x, v)`` = (x'', friction)."""
 
     @fast_embedded
     def carrying(problem: Any, tau: float, x: Any, v: Any, _e: Any) -> Any:
@@ -354,7 +359,9 @@ def carrying_nothing(rates: Any) -> Any:
 
 @cache
 def _stages_of(rates: Any) -> Any:
-    """``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``: compiled once for all."""
+    """Return ``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``; it is compiled
+    only once.
+    """
 
     @fast_embedded
     def stages(problem: Any, tau: float, state: State, h: float) -> Stages:
@@ -432,9 +439,10 @@ def _stages_of(rates: Any) -> Any:
 
 
 def stepper(rates: Any) -> Any:
-    """``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v, e)`` = (x'', friction, e').
+    """Return ``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v, e)``.
 
-    The rates are bound here: numba caches no kernel that is handed a function.
+    The rates return (x'', friction, e'). They are bound here because numba caches no kernel that is handed a
+    function.
     """
     stages = _stages_of(rates)
 
@@ -457,7 +465,10 @@ def stepper(rates: Any) -> Any:
 
 @fast
 def _coefficients(h: float, start: Any, end: Any, k: Any, extra: Any) -> Any:
-    """Of the polynomial with this start, this end and these slopes at the stages and at the four that are added."""
+    """Return the coefficients of the polynomial with this start and end, and slopes at all stages.
+
+    k: slopes at the stages of the step; extra: slopes at the four stages added for the interpolant.
+    """
     rise = end - start
     return (
         start,
@@ -472,7 +483,7 @@ def _coefficients(h: float, start: Any, end: Any, k: Any, extra: Any) -> Any:
 
 
 def interpolant(rates: Any) -> Any:
-    """``dense(problem, tau, state, h)``: all of the step that ``stepper`` takes for the same rates."""
+    """Return ``dense(problem, tau, state, h)``, the whole step that ``stepper`` takes for the same rates."""
     stages = _stages_of(rates)
 
     @fast
@@ -519,6 +530,6 @@ def _polynomial(f: Any, s: float) -> Any:
 
 @fast
 def motion_within(dense: Dense, part: float) -> Any:
-    """Position and velocity a while into a step."""
+    """Return position and velocity at the time ``part`` after the start of a step."""
     s = part / dense.h
     return _polynomial(dense.x, s), _polynomial(dense.v, s)

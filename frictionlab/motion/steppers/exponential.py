@@ -1,10 +1,13 @@
-"""Exponential splitting: the deflection is advanced exactly, or nearly so, while the velocity waits; then reversed.
+"""Exponential splitting of order two: drift at constant velocity, kick of the velocity, drift.
 
-Half a step of drift (x and z move at constant velocity), a whole step of kick (the velocity changes by the load and
-the forces of the middle, by the explicit midpoint rule), half a step of drift: G. Strang, SIAM J. Numer. Anal. 5
-(1968); of order two. However long the step, the deflection stays in its invariant set and ends where steady slip
-brings it. The kick is explicit: springs limit the step to step * frequency <= 2, dashpots to step * rate <= 2, the
-springs of the bristles included, however little they matter while the mass slips.
+The drift advances the deflection exactly or nearly so.
+
+A step is half a step of drift (x and z move at constant velocity), a whole step of kick (the velocity changes
+by the load and the forces of the middle, by the explicit midpoint rule) and half a step of drift: G. Strang,
+SIAM J. Numer. Anal. 5 (1968); of order two. However long the step, the deflection stays in its invariant set
+and ends where steady slip brings it. The kick is explicit: springs limit the step to step * frequency <= 2,
+dashpots to step * rate <= 2. Springs of the bristles count among them, however little they matter while the
+mass slips.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from frictionlab.motion.steppers.step import (
 )
 
 DECAY = 2.0
-"""Largest step times frequency, or rate of decay, of a mass held by its springs and bristles."""
+"""Largest step times frequency, or times rate of decay, of a mass held by its springs and bristles."""
 
 
 class Drift(NamedTuple):
@@ -38,7 +41,7 @@ class Drift(NamedTuple):
 def kick(
     acceleration_under: Any, resistance: Any, problem: Any, start: StepStart, h: float, at: Drift
 ) -> Any:
-    """Velocity after a whole step at this place, and the coefficient of friction over it."""
+    """Return the velocity after a whole step at this place, and the coefficient of friction over it."""
     body, k = problem.body, start.k
     push, pressed = load_at(problem, k, MIDDLE), normal_load_at(problem, k, MIDDLE)
     belt = belt_at(problem, k, MIDDLE)
@@ -53,11 +56,12 @@ def kick(
 def exponential_step(
     acceleration_under: Any, resistance: Any, advance: Any, problem: Any, start: StepStart, h: float
 ) -> StepEnd:
-    """One step over h, for a law of one deflection.
+    """Take one step over h, for a law of one deflection.
 
-    acceleration_under(body, load, normal_load, x, v, friction) is the equation of motion, resistance(problem, k, w,
-    z) the coefficient in the middle of the k-th step; advance(problem, k, part, h, w, z) is the deflection after slip
-    w that lasts half the step, h, from its node ``part`` on. The impulse is that of the coefficient.
+    acceleration_under(body, load, normal_load, x, v, friction) is the equation of motion. resistance(problem,
+    k, w, z) is the coefficient in the middle of the k-th step. advance(problem, k, part, h, w, z) is the
+    deflection after slip w for half the step, h, from its node ``part`` on. The impulse is that of the
+    coefficient.
     """
     k, half = start.k, 0.5 * h
     first, middle = belt_at(problem, k, FIRST), belt_at(problem, k, MIDDLE)

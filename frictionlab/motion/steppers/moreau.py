@@ -1,16 +1,18 @@
-"""Moreau-Jean: one step at velocity level, friction's impulse projected on its disk; springs and dashpots implicit.
+"""Moreau-Jean: one step at velocity level, with friction's impulse projected on its disk.
+
+Springs and dashpots are implicit.
 
 Over a step of length h the balance of momentum reads, along each axis,
 
     v1 - v0 = h (load - damping v_theta - stiffness x_theta) - P,   x1 = x0 + h v_theta,
 
-with v_theta = theta v1 + (1 - theta) v0, x_theta likewise, load and normal load taken at that instant, and P the
-impulse of friction. Where the impulse that brings the slip to zero at the end of the step lies in the disk of radius
-h*normal_load*(static coefficient), it is taken: the mass sticks. Otherwise P lies on the disk of the sliding
-coefficient, along the slip w_theta and with the coefficient at that speed, both found with the step: nothing is
-lagged. (Directed by the slip at the end of the step, the scheme is of order one wherever friction turns, for
-theta = 1/2 too.) Stable for theta >= 1/2 however long the step. J. J. Moreau, in Nonsmooth Mechanics and
-Applications (1988); M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999).
+with v_theta = theta v1 + (1 - theta) v0 and x_theta likewise; load and normal load are taken at that instant, and P is
+the impulse of friction. If the impulse that brings slip to zero at the end of the step lies in the disk of radius
+h*normal_load*(static coefficient), the step takes it and the mass sticks. Otherwise P lies on the disk of the sliding
+coefficient, along the slip w_theta and with the coefficient at that speed. Both are found with the step: no number is
+lagged. (Directed by the slip at the end of the step, the scheme would be of order one wherever friction turns, for
+theta = 1/2 too.) The scheme is stable for theta >= 1/2 however long the step. J. J. Moreau, in Nonsmooth Mechanics
+and Applications (1988); M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999).
 """
 
 from __future__ import annotations
@@ -24,11 +26,11 @@ from frictionlab.motion.steppers.step import FIRST, LAST, StepEnd, StepStart, be
 MOST_TRIALS = 60
 TINY = 1e-300
 SMALL = 2e-15
-"""Relative to the impulse or the speed; about what rounding leaves."""
+"""Tolerance relative to the impulse or the speed; about the size of rounding."""
 
 
 class ContactStep(NamedTuple):
-    """The contact over one step: slip w and impulse P with mass_1 w1 + P1 = q1, mass_2 w2 + P2 = q2."""
+    """Contact over one step: slip w and impulse P with mass_1 w1 + P1 = q1, mass_2 w2 + P2 = q2."""
 
     law: Any
     weight: float  # normal load times step
@@ -44,25 +46,29 @@ class ContactEnd(NamedTuple):
 
 
 over = by_dimension(lambda a, b, q: q / a, lambda a, b, q: complex(q.real / a, q.imag / b))
-"""q with its components along x1 and x2 divided by a and b."""
+"""over(a, b, q): q with its components along x1 and x2 divided by a and b."""
 
 momentum = by_dimension(
     lambda mass_1, mass_2, velocity: mass_1 * velocity,
     lambda mass_1, mass_2, velocity: complex(mass_1 * velocity.real, mass_2 * velocity.imag),
 )
-"""momentum(mass_1, mass_2, velocity): a velocity with its components times the masses along x1 and x2."""
+"""momentum(mass_1, mass_2, velocity): velocity with its components multiplied by the masses along x1 and
+x2."""
 
 
 @inner
 def _excess(contact: ContactStep, speed: float, q: Any) -> float:
-    """Above zero where a slip of this speed takes more than q; linear in speed for one mass and constant friction."""
+    """Return how much more than q a slip of this speed takes, relative to q.
+
+    It is linear in speed for one mass and constant friction.
+    """
     rub = contact.weight * contact.law.sliding_friction(speed)
     return 1.0 / length(over(contact.mass_1 * speed + rub, contact.mass_2 * speed + rub, q)) - 1.0
 
 
 @inner
 def _slip_speed(contact: ContactStep, q: Any) -> float:
-    """The speed of slip at the end of the step (Illinois regula falsi on a bracket that always holds).
+    """Return the speed of slip at the end of the step (Illinois regula falsi on a bracket that always holds).
 
     The first guess is exact for constant friction and one mass.
     """
@@ -97,7 +103,10 @@ def _slip_speed(contact: ContactStep, q: Any) -> float:
 
 @inner
 def project_impulse(contact: ContactStep, theta: float, before: Any, q: Any) -> ContactEnd:
-    """Slip at the end of the step and impulse of a contact that is pushed by q; before: the slip it began with."""
+    """Return slip at the end of the step and impulse of a contact that is pushed by q.
+
+    before: slip at the start of the step.
+    """
     # What brings the slip to zero at the end of the step lies in the disk of the static coefficient: it sticks.
     if length(q) <= contact.weight * contact.law.static_friction():
         return ContactEnd(0.0 * q, q)
@@ -116,10 +125,10 @@ def project_impulse(contact: ContactStep, theta: float, before: Any, q: Any) -> 
 
 @inner
 def moreau_step(expanded: Any, slopes_at: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
-    """One step over h.
+    """Take one step over h.
 
-    slopes_at(body, x, v) is the linear body beside this motion, whose springs and dashpots act along each axis for
-    itself, expanded(body, x, v, ahead, later) its force on another position and velocity.
+    slopes_at(body, x, v) is the linear body beside this motion; its springs and dashpots act along each axis
+    separately. expanded(body, x, v, ahead, later) is its force at another position and velocity.
     """
     theta, x, v = problem.stepper.theta, start.x, start.v
     late, left, body = theta * h, 1.0 - theta, slopes_at(problem.body, x, v)

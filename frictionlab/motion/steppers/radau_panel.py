@@ -1,8 +1,8 @@
-"""One step of a deflection under a prescribed slip: five-stage Radau IIA collocation (order 9, L-stable).
+"""Five-stage Radau IIA collocation of a deflection under a prescribed slip, one step (order 9, L-stable).
 
-The unknowns are what the stages add to the deflection, so that a soft contact's small changes keep their digits; the
-last stage is the end of the step, so that a stiff one's rounding does not grow (Hairer & Wanner, Solving Ordinary
-Differential Equations II, 1996, sections IV.5 and IV.8).
+The unknowns are the increments of the deflection at the stages, so that small changes of a soft contact keep
+their digits. The last stage is the end of the step, so that rounding of a stiff contact does not grow (Hairer
+& Wanner, Solving Ordinary Differential Equations II, 1996, sections IV.5 and IV.8).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ MOST_ITERATIONS = 12
 
 
 def _radau() -> tuple[Floats, Floats]:
-    """Nodes in (0, 1] and the matrix that integrates the polynomial through them from 0 to each."""
+    """Return nodes in (0, 1] and the matrix that integrates the polynomial through them from 0 to each."""
     legendre = np.polynomial.legendre.Legendre.basis
     # The nodes of Radau IIA are the zeros of P_s - P_(s-1), the right end 1 among them: it is divided out.
     inside = (legendre(STAGES) - legendre(STAGES - 1)) // np.polynomial.Polynomial([-1.0, 1.0]).convert(
@@ -42,7 +42,10 @@ WEIGHTS: Floats = MATRIX[-1].copy()
 
 
 class Oscillation(NamedTuple):
-    """Prescribed oscillation, velocities Im(phasor exp(i angle)); rotated: 1 where its speed alone moves bristles."""
+    """Prescribed oscillation, with velocities Im(phasor exp(i angle)).
+
+    rotated: 1 where its speed alone moves bristles.
+    """
 
     along: complex
     across: complex
@@ -51,16 +54,17 @@ class Oscillation(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a stretch of the period begins: its angle, and the slip velocity there."""
+    """Start of a stretch of the period: its angle, and the slip velocity there."""
 
     angle: float
     slip: complex
 
 
 class Scale(NamedTuple):
-    """What numbers are measured by: deflection [length] for differences, and for changes; friction coefficient.
+    """Units of numbers: deflection [length] for differences, and for changes; friction coefficient.
 
-    circle: > 0 where a yielding deflection moves along its circle, 0 where it follows the slip, < 0 for the law's.
+    circle: > 0 for a yielding deflection that moves along its circle, 0 for one that follows the slip, < 0
+    for the rate of the law.
     """
 
     reach: float
@@ -70,7 +74,7 @@ class Scale(NamedTuple):
 
 
 class Bristle(NamedTuple):
-    """A bristle under a prescribed slip: its law, the slip, and what numbers are measured by."""
+    """Bristle under a prescribed slip: its law, the slip, and the units of its numbers."""
 
     law: Any
     slip: Oscillation
@@ -78,7 +82,7 @@ class Bristle(NamedTuple):
 
 
 class PanelRoom(NamedTuple):
-    """Room for one panel: stages' gains, slips, rates, frictions, and the linear system."""
+    """Arrays for one panel: increments, slips, rates and frictions of the stages, and the linear system."""
 
     gain: Any
     slip: Any
@@ -92,7 +96,7 @@ class PanelRoom(NamedTuple):
 
 @inner
 def slip_in_the_plane(slip: Oscillation, place: Place, angle: float) -> complex:
-    """The slip velocity this angle after a place, to rounding of the change since there."""
+    """Return the slip velocity this angle after a place, accurate to rounding of the change since there."""
     # A difference of sines as a product: near rest the slip keeps its digits.
     turn = place.angle + 0.5 * angle
     swing = complex(math.cos(turn), math.sin(turn)) * (2.0 * math.sin(0.5 * angle))
@@ -147,18 +151,19 @@ def _bound_in_the_plane(law: Any, v: complex, circle: float, z: complex) -> Any:
 
 
 slip_at = by_dimension(_slip_on_the_line, _slip_in_the_plane)
-"""(slip, place, angle after it, deflection for its type) -> slip velocity as the law takes it."""
+"""slip_at(slip, place, angle, z): slip velocity as the law takes it, at this angle after the place; z gives
+the type."""
 parts = by_dimension(_parts_on_the_line, _parts_in_the_plane)
 part = by_dimension(_part_on_the_line, _part_in_the_plane)
 made = by_dimension(_made_on_the_line, _made_in_the_plane)
 bound = by_dimension(_bound_on_the_line, _bound_in_the_plane)
-"""(law, slip velocity, circle, deflection) -> (rate, friction); circle: negative for the law's own rate, 0 where the
-deflection follows the slip, positive where it moves along a circle."""
+"""bound(law, v, circle, z): rate of deflection and friction. circle: negative for the law's own rate, 0 for a
+deflection that follows the slip, positive for one that moves along a circle."""
 
 
 @inner
 def work_for(z: Any) -> PanelRoom:
-    """Room for panels of this kind of deflection."""
+    """Return arrays for panels of this kind of deflection."""
     n = parts(z)
     size = STAGES * n
     kind = np.full(STAGES, z)
@@ -176,9 +181,10 @@ def work_for(z: Any) -> PanelRoom:
 
 @inner
 def _evaluate(bristle: Bristle, z: Any, work: PanelRoom) -> None:
-    """Rates and frictions at the stages, and by differences the slopes of the rates.
+    """Write rates and frictions at the stages, and slopes of the rates by differences.
 
-    Differences are taken towards more load: the rate of bristles that unload elastically jumps where they begin to.
+    Differences are taken towards more load: the rate of bristles that unload elastically jumps where
+    unloading begins.
     """
     law, scale = bristle.law, bristle.scale
     n, small = parts(z), 1e-7 * scale.reach
@@ -197,7 +203,7 @@ def _evaluate(bristle: Bristle, z: Any, work: PanelRoom) -> None:
 
 @inner
 def _assemble(width: float, n: int, work: PanelRoom) -> None:
-    """identity - width * (integration matrix) x (slopes)."""
+    """Write identity - width * (integration matrix) x (slopes) to the matrix of the linear system."""
     for i in range(STAGES):
         for j in range(STAGES):
             for row in range(n):
@@ -209,9 +215,10 @@ def _assemble(width: float, n: int, work: PanelRoom) -> None:
 
 @inner
 def solve_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRoom) -> bool:
-    """Fill ``work`` with the step over span = (angle after the place, width) from ``z``; False where it fails.
+    """Fill ``work`` with the step over span = (angle after the place, width) from ``z``.
 
-    ``carry`` becomes the derivative of the deflection at the end by that at the start.
+    Return False if it fails. ``carry`` becomes the derivative of the deflection at the end with respect to
+    that at the start.
     """
     slip, scale = bristle.slip, bristle.scale
     n, width = parts(z), span[1] / slip.frequency
@@ -247,7 +254,7 @@ def solve_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRo
 
 @inner
 def _residuals(width: float, n: int, work: PanelRoom) -> None:
-    """The right sides: what the stages lack, and the effect of the start."""
+    """Write the right sides: residuals of the stages, and the effect of the start."""
     for i in range(STAGES):
         lack = -work.gain[i]
         for j in range(STAGES):
@@ -264,7 +271,7 @@ def _residuals(width: float, n: int, work: PanelRoom) -> None:
 
 @inner
 def _derivative(n: int, work: PanelRoom) -> None:
-    """``carry``, from the solution for the effect of the start on the last stage."""
+    """Write ``carry``, from the solution for the effect of the start on the last stage."""
     for row in range(n):
         for column in range(n):
             same = 1.0 if row == column else 0.0
@@ -273,7 +280,7 @@ def _derivative(n: int, work: PanelRoom) -> None:
 
 @inner
 def euler_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRoom) -> None:
-    """An explicit Euler step in place of ``solve_panel``, for a negligibly short step across a jump of the rate."""
+    """Fill ``work`` with an explicit Euler step, for a negligibly short step across a jump of the rate."""
     slip = bristle.slip
     n, width = parts(z), span[1] / slip.frequency
     rate, friction = bound(bristle.law, slip_at(slip, place, span[0], z), bristle.scale.circle, z)

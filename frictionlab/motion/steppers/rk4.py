@@ -1,10 +1,10 @@
-"""The classical Runge-Kutta method of order 4 (W. Kutta, 1901) for a mass and what its contact remembers.
+"""Classical Runge-Kutta method of order 4 (W. Kutta, 1901) for a mass and the memory of its contact.
 
-x'' = a(tau, x, x', z), z' = r(x', z) with z of no, one or several numbers. Explicit: a step is short enough while
-step * rate <= 2.785 for every rate at which something decays, and step * frequency <= 2.828 for every frequency that
-nothing damps. Without event location: where friction jumps inside a step, the step is of order one with irregular
-errors, since the weighted mean of four rates does not depend on the time of the jump; where the rate of a memory has
-a corner, the order falls to two.
+x'' = a(tau, x, x', z), z' = r(x', z) with z of no, one or several numbers. The method is explicit: a step is
+short enough while step * rate <= 2.785 for every rate of decay, and step * frequency <= 2.828 for every
+undamped frequency. It locates no events. If friction jumps inside a step, that step is of order one with
+irregular errors, since the weighted mean of four rates does not depend on the time of the jump. If the rate
+of a memory has a corner inside a step, the order falls to two.
 """
 
 from __future__ import annotations
@@ -16,14 +16,15 @@ from frictionlab.compile.stack import count_of, room
 from frictionlab.motion.steppers.step import FIRST, LAST, MIDDLE, StepEnd, StepStart
 
 DECAY = 2.785
-"""Largest step times rate of decay: where the stability polynomial leaves the unit disk on the real axis."""
+"""Largest step times rate of decay: the stability polynomial leaves the unit disk there on the real axis."""
 
 
 @inner
 def rk4_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
-    """One step over h; ``rates(problem, k, part, x, v, memory, moving)`` = (x'', friction) writes z' into ``moving``.
+    """Take one step over h; ``rates(problem, k, part, x, v, memory, moving)`` returns (x'', friction).
 
-    part is a node of the k-th step. It has no stick phases: a step never ends at rest.
+    It writes z' into ``moving``; part is a node of the k-th step. There are no stick phases: a step never
+    ends at rest.
     """
     law, memory, k, x, v = problem.law, problem.memory, start.k, start.x, start.v
     n, half, sixth = count_of(law), 0.5 * h, h / 6.0

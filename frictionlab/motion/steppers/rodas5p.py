@@ -1,8 +1,8 @@
 """Rodas5P: a Rosenbrock method of order 5 for stiff systems, L-stable and stiffly accurate, in eight stages.
 
-Steinebach (2023), BIT Numer. Math. 63, 27. In the form of Hairer & Wanner (1996), Sec. IV.7, without products of the
-Jacobian: W k_i = f(t + c_i h, y + sum a_ij k_j) + h d_i f_t + sum c_ij k_j / h with W = 1/(gamma h) - f_y; the
-eighth increment is the difference to the embedded method of order 4.
+Steinebach (2023), BIT Numer. Math. 63, 27. Here it has the form of Hairer & Wanner (1996), Sec. IV.7, without
+products of the Jacobian: W k_i = f(t + c_i h, y + sum a_ij k_j) + h d_i f_t + sum c_ij k_j / h with W =
+1/(gamma h) - f_y. The eighth increment is the difference to the embedded method of order 4.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ TIMES = np.array(
 SLOPES = np.array(
     [GAMMA, -0.42387512638858027, -0.3384627126235924, 1.8046452872882734, 2.325825639765069, 0.0, 0.0, 0.0]
 )
-"""d_i, of the derivative with respect to time."""
+"""Factors d_i of the derivative with respect to time."""
 _SIXTH = [
     -7.502846399306121,
     2.561846144803919,
@@ -37,7 +37,7 @@ INCREMENTS = np.array(
         [*_SIXTH, 1.0, 1.0, 0.0],
     ]
 )
-"""a_ij; the step ends at the eighth argument plus the eighth increment."""
+"""Factors a_ij of increments in arguments; the step ends at the eighth argument plus the eighth increment."""
 _COUPLINGS = [
     [],
     [-14.155112264123755],
@@ -55,7 +55,7 @@ _COUPLINGS = [
     ],
 ]
 COUPLINGS = np.array([[*row, *[0.0] * (STAGES - len(row))] for row in _COUPLINGS])
-"""c_ij."""
+"""Factors c_ij of increments in the right sides."""
 DENSE = np.array(
     [
         [
@@ -72,5 +72,5 @@ DENSE = np.array(
         ],
     ]
 )
-"""h_ij: a share s into the step the state is (1 - s) y0 + s (y1 + (1 - s) (g_1 + s (g_2 + s g_3))), of order 4, with
-g_i = sum h_ij k_j."""
+"""Factors h_ij of the interpolant of order 4. At the share s of a step the state is (1 - s) y0 + s (y1 + (1 -
+s) (g_1 + s (g_2 + s g_3))), with g_i = sum h_ij k_j."""

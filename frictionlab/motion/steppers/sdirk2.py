@@ -24,7 +24,8 @@ GAMMA = 1.0 - math.sqrt(0.5)
 MOST_TRIALS = 30
 MOST_HALVINGS = 24
 MOST_PARTS = 10_000
-"""Parts of one step that are tried; a contact that needs more is too stiff for it."""
+"""Largest number of parts of one step that are tried; a contact that needs more is too stiff for the
+method."""
 CLOSE = 1e-10
 """Relative size of the last Newton step; convergence is quadratic, so the remaining error is negligible."""
 NUDGE = 1e-6
@@ -61,7 +62,7 @@ class StageSolution(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """The residual of the equations of a stage; as a change, what Newton's method adds to velocity and deflection."""
+    """Residual of the equations of a stage, or a change of velocity and deflection by Newton's method."""
 
     v: Any
     z: Any
@@ -69,14 +70,17 @@ class Gap(NamedTuple):
 
 @inner
 def gap_of(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Gap:
-    """What velocity and deflection miss the equations of a stage by."""
+    """Return the residual of the equations of a stage at this velocity and deflection."""
     a, _, r = rates(problem, stage.tau, stage.x + stage.g * v, v, z)
     return Gap(v - stage.v - stage.g * a, z - stage.z - stage.g * r)
 
 
 @inner
 def nudges(stage: Stage) -> tuple[float, float]:
-    """Steps of the difference quotients; that of velocity is small against full deflection in the stage, too."""
+    """Return the steps of the difference quotients.
+
+    That of velocity is also small compared with full deflection in the stage.
+    """
     return NUDGE * min(stage.quick, stage.deep / stage.g), NUDGE * stage.deep
 
 
@@ -111,18 +115,18 @@ def _change_in_the_plane(rates: Any, problem: Any, stage: Stage, z: complex, at:
 
 
 newton_change = by_dimension(_change_on_the_line, _change_in_the_plane)
-"""newton_change(rates, problem, stage, z, gap, v): the full step of Newton's method from v, z."""
+"""newton_change(rates, problem, stage, z, gap, v): full step of Newton's method from v, z."""
 
 
 @inner
 def size_of(stage: Stage, of: Gap) -> float:
-    """A gap or a change over the scales of velocity and deflection."""
+    """Return a residual or a change, measured in the scales of velocity and deflection."""
     return length(of.v) / stage.quick + length(of.z) / stage.deep
 
 
 @inner
 def solve_stage(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> StageSolution:
-    """Damped Newton's method from a guess."""
+    """Solve the equations of a stage by damped Newton's method, from a guess."""
     at = gap_of(rates, problem, stage, v, z)
     missed = size_of(stage, at)
     for _ in range(MOST_TRIALS):
@@ -145,7 +149,10 @@ def solve_stage(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Stage
 def two_stages(
     rates: Any, problem: Any, tau: float, start: DeflectedState, h: float, swing: float
 ) -> tuple[DeflectedState, bool]:
-    """One step, and whether both of its stages converged; swing: by how much the belt's velocity varies."""
+    """Take one step, and check whether both of its stages converged.
+
+    swing: amplitude of the variation of the belt's velocity.
+    """
     # Scales of this step: of velocity from body and slip, of deflection from what slip can do within the step.
     g, late = GAMMA * h, (1.0 - GAMMA) * h
     x, v, z = start.x, start.v, start.z
@@ -164,11 +171,11 @@ def two_stages(
 
 @inner
 def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float, swing: float) -> StepEnd:
-    """One step over h, for a law of one deflection; ``rates(problem, tau, x, v, z)`` = (x'', friction, z').
+    """Take one step over h, for a law of one deflection.
 
-    swing: by how much the belt's velocity varies.
-
-    Steps in which Newton's method fails are halved; the state is NaN if even 2^-24 of the step fails, or too many.
+    ``rates(problem, tau, x, v, z)`` returns (x'', friction, z'). swing: amplitude of the variation of the
+    belt's velocity. Steps in which Newton's method fails are halved. The state is NaN if even 2^-24 of the
+    step fails, or if there are too many parts.
     """
     # Parts of the step, each a half of the one that failed: what is done is kept.
     state = DeflectedState(start.x, start.v, problem.memory[0], 0.0 * start.v)

@@ -1,7 +1,4 @@
-"""A time step as every stepper sees it: what acts on the mass at half steps, where a step starts, where it ends.
-
-How much longer the next step of an adaptive method may be.
-"""
+"""Interface of all steppers: loads at half steps, start and end of a step, growth of the next step."""
 
 from __future__ import annotations
 
@@ -18,14 +15,14 @@ from frictionlab.scene.body import BodyNumbers
 LOAD, NORMAL_LOAD, BELT, COLUMNS = 0, 1, 2, 3
 """Places in ``problem.grid``, which has COLUMNS numbers for every node of a lap of steps.
 
-Complex in the plane. A bare pointer: kernels count the references to every array they hand on.
-"""
+They are complex in the plane. The grid is a bare pointer, since kernels count the references to every array
+they hand on."""
 FIRST, MIDDLE, LAST = 0, 1, 2
-"""The nodes of a step, half a step apart."""
+"""Nodes of a step, half a step apart."""
 
 node = by_variation(lambda body, k, part: 2 * k + part, lambda body, k, part: 3 * k + part)
-"""node(body, k, part): which node of the lap is that of the k-th step. Where something may jump at a corner, a step
-that ends there and the one that begins there have a node each."""
+"""node(body, k, part): index in the lap of this node of the k-th step. Where something may jump at a corner,
+the step that ends there and the one that begins there have a node each."""
 
 _belt = by_variation(lambda body, velocity: velocity.real, lambda body, velocity: velocity)
 
@@ -39,24 +36,24 @@ load_at = by_relaxing(
     lambda problem, k, part: _driven_by(problem, k, part),
     lambda problem, k, part: _driven_by(problem, k, part) - problem.body.relaxing.force,
 )
-"""load_at(problem, k, part): what drives the mass, at a node of the k-th step; less the force of what of the body
-remembers in the middle of the step."""
+"""load_at(problem, k, part): load on the mass at a node of the k-th step. The force of relaxing springs in
+the middle of the step is subtracted."""
 
 
 @embedded
 def normal_load_at(problem: Any, k: int, part: int) -> float:
-    """What presses it on the belt."""
+    """Return the normal load at a node of the k-th step."""
     return problem.grid[COLUMNS * node(problem.body, k, part) + NORMAL_LOAD].real
 
 
 @embedded
 def belt_at(problem: Any, k: int, part: int) -> Any:
-    """The velocity of the belt; a number on the line where it is steady."""
+    """Return the velocity of the belt at a node of the k-th step; a number on the line where it is steady."""
     return _belt(problem.body, problem.grid[COLUMNS * node(problem.body, k, part) + BELT])
 
 
 class StepStart(NamedTuple):
-    """Where the k-th step starts; what the law remembers there is ``problem.memory``."""
+    """Start of the k-th step; ``problem.memory`` holds the memory of the law there."""
 
     k: int
     tau: float
@@ -65,9 +62,9 @@ class StepStart(NamedTuple):
 
 
 class StepEnd(NamedTuple):
-    """Where a step ends; what the law remembers there is written into ``problem.ahead``.
+    """End of a step; the memory of the law there is written into ``problem.ahead``.
 
-    growth: by how much to change the next step; below one where this one is to be repeated, shorter.
+    growth: factor for the length of the next step; below one, this step must be repeated, shorter.
     """
 
     x: Any
@@ -79,14 +76,14 @@ class StepEnd(NamedTuple):
 
 @fast
 def squared(body: BodyNumbers, x: Any, v: Any) -> float:
-    """Twice the energy of a state."""
+    """Return twice the energy of a state."""
     elastic = body.stiffness_mean * x + body.stiffness_split * x.conjugate()
     return (elastic * x.conjugate()).real + (v * v.conjugate()).real
 
 
 @inner
 def growth_of(body: BodyNumbers, taken: Any, accuracy: float) -> float:
-    """For a step of DOP853, by both of its estimates (Hairer et al., 1993, II.10)."""
+    """Return the growth after a step of DOP853, by both error estimates (Hairer et al., 1993, II.10)."""
     fifth = squared(body, taken.x_error5, taken.v_error5)
     third = squared(body, taken.x_error3, taken.v_error3)
     # Nothing divided by nothing would not be a number.
@@ -96,37 +93,45 @@ def growth_of(body: BodyNumbers, taken: Any, accuracy: float) -> float:
 
 @inner
 def wary_growth_of(body: BodyNumbers, taken: Any, accuracy: float) -> float:
-    """The same by the fifth-order error alone: the mixture of orders does not see a layer passed in one step."""
+    """Return the growth after a step of DOP853, by the fifth-order error alone.
+
+    The mixture of orders does not see a layer that is passed in one step.
+    """
     return _growth_at_order_8(math.sqrt(squared(body, taken.x_error5, taken.v_error5)) / accuracy)
 
 
 @inner
 def growth_factor(error: float, order: float) -> float:
-    """By how much to change a step whose error, relative to what it may be, falls with this power of its length.
+    """Return the factor for the length of a step, from its error relative to the tolerance.
 
-    Below one, the step is to be repeated.
+    order: power of the length with which the error falls. Below one, the step is to be repeated.
     """
     return _bounded_growth(error, error ** (1.0 / order))
 
 
 @inner
 def _growth_at_order_8(error: Any) -> Any:
-    """The same; three square roots take a fifth of the time of a power."""
+    """Return the growth for an error of order 8; three square roots take a fifth of the time of a power."""
     return _bounded_growth(error, math.sqrt(math.sqrt(math.sqrt(error))))
 
 
 @inner
 def _bounded_growth(error: Any, root: Any) -> Any:
-    """At most sixfold; not shorter without need, and never much shorter but where the error is not a number."""
+    """Return the growth from an error and its root of the order of the step.
+
+    It is at most 6, at least 1 for an error of at most 1, at least 0.1 for a larger one and 0.1 where the error
+    is not a number.
+    """
     least = select(error > 1.0, 0.1, 1.0)
     return select(error < 1e300, min(6.0, max(least, 0.9 / max(root, 0.1))), 0.1)
 
 
 @inner
 def longest_step(body: BodyNumbers, sliding: float, accuracy: float) -> float:
-    """The longest step: a radian of the loads or of the body's quickest oscillation, less for finer maps.
+    """Return the longest step: a radian of the quickest load or oscillation, less for finer maps.
 
-    Were it the same for all, two maps could agree because both are limited by it, and neither be accurate.
+    With one longest step for all maps, two maps could agree because both are limited by it, and neither be
+    accurate.
     """
     stiffest = body.stiffness_mean + abs(body.stiffness_split) + hardest(body)
     radian = min(1.0 / quickest_of(body), 1.0 / math.sqrt(stiffest))

@@ -6,13 +6,14 @@ Over a step of length h the balance of momentum reads, along each axis,
 
     v1 - v0 = h (load - damping v_theta - stiffness x_theta) - P,   x1 = x0 + h v_theta,
 
-with v_theta = theta v1 + (1 - theta) v0 and x_theta likewise; load and normal load are taken at that instant, and P is
-the impulse of friction. If the impulse that brings slip to zero at the end of the step lies in the disk of radius
-h*normal_load*(static coefficient), the step takes it and the mass sticks. Otherwise P lies on the disk of the sliding
-coefficient, along the slip w_theta and with the coefficient at that speed. Both are found with the step: no number is
-lagged. (Directed by the slip at the end of the step, the scheme would be of order one wherever friction turns, for
-theta = 1/2 too.) The scheme is stable for theta >= 1/2 however long the step. J. J. Moreau, in Nonsmooth Mechanics
-and Applications (1988); M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999).
+with v_theta = theta v1 + (1 - theta) v0 and x_theta likewise; load and normal load are taken at that instant,
+and P is the impulse of friction. If the impulse that brings slip to zero at the end of the step lies in the
+disk of radius h*normal_load*(static coefficient), the step takes it and the mass sticks. Otherwise P lies on
+the disk of the sliding coefficient, along the slip w_theta and with the coefficient at that speed. Both are
+found with the step: no number is lagged. (Directed by the slip at the end of the step, the scheme would be of
+order one wherever friction turns, for theta = 1/2 too.) The scheme is stable for theta >= 1/2 however long
+the step. J. J. Moreau, in Nonsmooth Mechanics and Applications (1988); M. Jean, Comput. Methods Appl. Mech.
+Engrg. 177 (1999).
 """
 
 from __future__ import annotations

@@ -119,8 +119,8 @@ def _growth_at_order_8(error: Any) -> Any:
 def _bounded_growth(error: Any, root: Any) -> Any:
     """Return the growth from an error and its root of the order of the step.
 
-    It is at most 6, at least 1 for an error of at most 1, at least 0.1 for a larger one and 0.1 where the error
-    is not a number.
+    It is at most 6, at least 1 for an error of at most 1, at least 0.1 for a larger one and 0.1 where the
+    error is not a number.
     """
     least = select(error > 1.0, 0.1, 1.0)
     return select(error < 1e300, min(6.0, max(least, 0.9 / max(root, 0.1))), 0.1)

@@ -194,7 +194,7 @@ class FrictionLaw(Labelled, ABC):
 
     @classmethod
     def _in_order(cls) -> list[str]:
-        """Return the names of the fields with coefficients first, since several laws inherit those of the contact."""
+        """Return the names of the fields, coefficients first: several laws inherit those of the contact."""
         return sorted(super()._in_order(), key=lambda name: not cls.model_fields[name].is_required())
 
     @abstractmethod
@@ -232,7 +232,7 @@ class FrictionLaw(Labelled, ABC):
         return (self.sliding_friction(speed) / speed) * v  # one division fewer than along v / speed
 
     def under_load(self, normal_load: float) -> Self:
-        """Return the same law per unit of a normal load: parameters of the contact become parameters per unit load.
+        """Return the same law per unit of a normal load: contact parameters become parameters per unit load.
 
         Parameters
         ----------

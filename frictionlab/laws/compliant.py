@@ -15,8 +15,10 @@ from frictionlab.values.quantities import document
 Stiffness = Annotated[Positive, Dimension(length=-1)]
 document(
     Stiffness,
-    """A bristle stiffness > 0 per unit normal load [1/m in a scene given in SI units, else 1/L].
+    """Bristle stiffness > 0 per unit normal load [1/m in a scene given in SI units, else 1/L], as parameter.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Spring(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -30,8 +32,10 @@ document(
 Length = Annotated[Positive, Dimension(length=1)]
 document(
     Length,
-    """A length > 0 [m in a scene given in SI units, else L], as the parameter of a law.
+    """Length > 0 [m in a scene given in SI units, else L], as the parameter of a law.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Asperities(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -43,20 +47,32 @@ document(
     """,
 )
 ContactStiffness = Annotated[Positive, Dimension(force=1, length=-1)]
-"""A stiffness > 0 of the contact [N/m in SI, else K_1]."""
+"""Contact stiffness > 0 [N/m in SI, else K_1]."""
 Damping = Annotated[NonNegative, Dimension(length=-1, time=1)]
-"""A bristle damping >= 0 per unit normal load [s/m in SI, else 1/scene velocity]."""
+"""Bristle damping >= 0 per unit normal load [s/m in SI, else 1/scene velocity]."""
 ContactDamping = Annotated[NonNegative, Dimension(force=1, length=-1, time=1)]
-"""A damping >= 0 of the contact [N s/m in SI, else M omega_1]."""
+"""Contact damping >= 0 [N s/m in SI, else M omega_1]."""
 
 
 class CompliantLaw(BristleLaw, ABC):
-    """A bristle law whose stiffness is given per unit normal load, by its presliding length or as contact stiffness.
+    """Bristle law with a stiffness: per unit normal load, by its presliding length or of the contact.
 
-    stiffness [1/scene length], > 0: friction coefficient per deflection, or instead
-    presliding_length [scene length], > 0: friction coefficient in slow sliding over stiffness, or instead
-    contact_stiffness [K_1], > 0: stiffness times normal load.
+    A subclass writes ``sliding_friction``, ``rate`` and ``friction``.
 
+    Parameters
+    ----------
+    stiffness : float, > 0, optional
+        Stiffness: friction coefficient per deflection [1/scene length]. Exactly one is given: ``stiffness``,
+        ``presliding_length`` or ``contact_stiffness``.
+    presliding_length : float, > 0, optional
+        Presliding length, friction coefficient in slow sliding over stiffness [scene length].
+    contact_stiffness : float, > 0, optional
+        Contact stiffness, ``stiffness`` times normal load [K_1].
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction, as in ``BristleLaw``.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Dahl(mu=0.4, presliding_length=0.01).bristle_stiffness
     40.0
@@ -77,7 +93,7 @@ class CompliantLaw(BristleLaw, ABC):
         return self
 
     def _problems(self) -> Iterator[str]:
-        """What the values are not together, each as ``name: what``."""
+        """Yield which values do not go together, each as ``name: what``."""
         names = "stiffness", "presliding_length", "contact_stiffness"
         given = [name for name in names if getattr(self, name) is not None]
         if not given:
@@ -85,7 +101,13 @@ class CompliantLaw(BristleLaw, ABC):
         yield from (f"{name}: leave it out where {given[0]} is given" for name in given[1:])
 
     def saturated_friction(self) -> float:
-        """The friction coefficient [-] that defines the presliding length: at vanishing slip speed."""
+        """Return the friction coefficient that defines the presliding length: that at vanishing slip speed.
+
+        Returns
+        -------
+        float
+            Friction coefficient [-].
+        """
         return self.sliding_friction(0.0)
 
     @property
@@ -100,11 +122,28 @@ class CompliantLaw(BristleLaw, ABC):
         )
 
     def presliding(self) -> float:
-        """Friction coefficient in slow sliding over stiffness."""
+        """Return the presliding length: friction coefficient in slow sliding over stiffness.
+
+        Returns
+        -------
+        float
+            Length [scene length].
+        """
         return self.saturated_friction() / self.bristle_stiffness
 
     def under_load(self, normal_load: float) -> Self:
-        """The same law per unit of this normal load [scene force]: contact parameters are divided by the load."""
+        """Return the same law per unit of a normal load: contact parameters are divided by the load.
+
+        Parameters
+        ----------
+        normal_load : float, > 0
+            Normal load [scene force].
+
+        Returns
+        -------
+        CompliantLaw
+            Law of the same class; the law itself if it has no contact parameter.
+        """
         if self.contact_stiffness is None:
             return self
         stiffness = self.contact_stiffness / normal_load
@@ -112,11 +151,29 @@ class CompliantLaw(BristleLaw, ABC):
 
 
 class DampedLaw(CompliantLaw, ABC):
-    """A compliant law whose bristles are damped as well.
+    """Compliant law whose bristles are damped as well.
 
-    damping [1/scene velocity], >= 0: friction coefficient per rate of deflection, 0 where left out; or instead
-    contact_damping [M omega_1], >= 0: damping times normal load.
+    A subclass writes ``sliding_friction``, ``rate`` and ``friction``.
 
+    Parameters
+    ----------
+    damping : float, >= 0, optional
+        Damping: friction coefficient per rate of deflection [1/scene velocity]; 0 if neither it nor
+        ``contact_damping`` is given.
+    contact_damping : float, >= 0, optional
+        Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
+    stiffness : float, > 0, optional
+        Stiffness: friction coefficient per deflection [1/scene length]. Exactly one is given: ``stiffness``,
+        ``presliding_length`` or ``contact_stiffness``.
+    presliding_length : float, > 0, optional
+        Presliding length, friction coefficient in slow sliding over stiffness [scene length].
+    contact_stiffness : float, > 0, optional
+        Contact stiffness, ``stiffness`` times normal load [K_1].
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction, as in ``BristleLaw``.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.LuGre(mu_kinetic=0.4, stiffness=40, contact_damping=5).under_load(10).bristle_damping
     0.5
@@ -140,7 +197,18 @@ class DampedLaw(CompliantLaw, ABC):
         return self.damping or 0.0
 
     def under_load(self, normal_load: float) -> Self:
-        """The same law per unit of this normal load [scene force]: contact parameters are divided by the load."""
+        """Return the same law per unit of a normal load: contact parameters are divided by the load.
+
+        Parameters
+        ----------
+        normal_load : float, > 0
+            Normal load [scene force].
+
+        Returns
+        -------
+        DampedLaw
+            Law of the same class; the law itself if it has no contact parameter.
+        """
         law = super().under_load(normal_load)
         if law.contact_damping is None:
             return law

@@ -13,11 +13,19 @@ from frictionlab.laws.base import Positive, SlidingLaw
 class Coulomb(SlidingLaw):
     """Amontons-Coulomb friction: constant coefficient in sliding; at rest, any force up to the static limit.
 
-    mu [-], > 0: friction coefficient in slip.
-    mu_static [-], >= mu: friction coefficient at rest; mu where left out.
+    Parameters
+    ----------
+    mu : float, > 0
+        Kinetic friction coefficient, that in slip [-].
+    mu_static : float, >= mu, optional
+        Static friction coefficient, that at rest [-]; ``mu`` if left out.
 
+    References
+    ----------
     Sources: Amontons (1699); Coulomb (1785); in the notation of Sulollari, van Dalen & Cabboi, Eq. 3.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
@@ -38,25 +46,25 @@ class Coulomb(SlidingLaw):
 
     @property
     def at_rest(self) -> float:
-        """The coefficient at rest [-]."""
+        """Coefficient at rest [-]."""
         return self.mu if self.mu_static is None else self.mu_static
 
     def sliding_friction(self, speed: float) -> float:
-        """The same coefficient at every speed."""
+        """Return mu, the same coefficient at every speed."""
         return self.mu
 
     def static_friction(self) -> float:
-        """mu_static."""
+        """Return mu_static."""
         return self.at_rest
 
     def constant_sliding_friction(self) -> bool:
-        """Always."""
+        """Return True: the coefficient is the same at every speed."""
         return True
 
     def monotone(self) -> bool:
-        """Where mu_static = mu: Coulomb friction is then the subdifferential of mu |v|."""
+        """Check whether mu_static = mu: Coulomb friction is then the subdifferential of mu |v|."""
         return self.at_rest == self.mu
 
     def steepest_fall(self) -> float:
-        """0, or infinite where mu_static > mu: friction then jumps at rest."""
+        """Return 0, or infinity if mu_static > mu: friction then jumps at rest."""
         return 0.0 if self.monotone() else math.inf

@@ -16,21 +16,47 @@ Share = Annotated[Positive, Field(lt=1)]
 class ElastoPlastic(StribeckBristle):
     """Elasto-plastic friction: LuGre bristles that are purely elastic below breakaway and on unloading.
 
-    z' = v - alpha |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v; alpha = 0 where
-    z.v <= 0 or |z| <= z_ba, 1 where |z| >= z_max = g/stiffness, in between (1 + sin(pi (|z| - (z_max + z_ba)/2)
-    /(z_max - z_ba)))/2, with z_ba = breakaway_ratio*mu_kinetic/stiffness. Below z_ba nothing drifts.
+    z' = v - alpha |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v, with the
+    Stribeck curve g of LuGre friction. alpha = 0 where z.v <= 0 or |z| <= z_ba, and 1 where |z| >= z_max =
+    g/stiffness. In between alpha = (1 + sin(pi (|z| - (z_max + z_ba)/2)/(z_max - z_ba)))/2, with z_ba =
+    breakaway_ratio*mu_kinetic/stiffness. Below z_ba nothing drifts. In the plane alpha is that of |z|,
+    switched off wherever z.v <= 0.
 
-    breakaway_ratio [-], > 0, < 1 (0.7): z_ba in shares of mu_kinetic/stiffness.
+    Parameters
+    ----------
+    mu_kinetic : float, > 0
+        Friction coefficient in quick sliding, viscosity apart [-].
+    mu_static : float, >= mu_kinetic, optional
+        Friction coefficient at vanishing speed [-]; ``mu_kinetic`` if left out.
+    stribeck_speed : float, > 0, default 1
+        Speed over which the coefficient falls [scene velocity].
+    stribeck_exponent : float, > 0, default 2
+        Exponent of the fall [-]; 2 makes the fall a Gaussian.
+    viscosity : float, >= 0, default 0
+        Viscosity [1/scene velocity]: adds viscosity*speed to the coefficient.
+    breakaway_ratio : float, > 0 and < 1, default 0.7
+        Breakaway deflection z_ba as a fraction of mu_kinetic/stiffness [-].
+    stiffness : float, > 0, optional
+        Stiffness: friction coefficient per deflection [1/scene length]. Exactly one is given: ``stiffness``,
+        ``presliding_length`` or ``contact_stiffness``.
+    presliding_length : float, > 0, optional
+        Presliding length, mu_kinetic/stiffness [scene length].
+    contact_stiffness : float, > 0, optional
+        Contact stiffness, ``stiffness`` times normal load [K_1].
+    damping : float, >= 0, optional
+        Damping: friction coefficient per rate of deflection [1/scene velocity]; 0 if neither it nor
+        ``contact_damping`` is given.
+    contact_damping : float, >= 0, optional
+        Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
-    The other parameters are those of LuGre friction:
-    mu_kinetic [-], > 0; mu_static [-], >= mu_kinetic, the same where left out; stribeck_speed [scene velocity], > 0
-    (1); stribeck_exponent [-], > 0 (2); stiffness [1/scene length], presliding_length [scene length]
-    (mu_kinetic/stiffness) or contact_stiffness [K_1]; damping [1/scene velocity] or contact_damping [M omega_1],
-    >= 0 (0); viscosity [1/scene velocity], >= 0 (0).
+    References
+    ----------
+    Sources: Dupont, Armstrong & Hayward (2000); Dupont, Hayward, Armstrong & Altpeter (2002).
 
-    Sources: Dupont, Armstrong & Hayward (2000); Dupont, Hayward, Armstrong & Altpeter (2002). In the plane alpha
-    is that of |z|, switched off wherever z.v <= 0.
-
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> law = fl.ElastoPlastic(mu_kinetic=0.4, stiffness=40)
@@ -42,7 +68,7 @@ class ElastoPlastic(StribeckBristle):
     breakaway_ratio: Share = 0.7
 
     def rate(self, v: Any, z: Any) -> Any:
-        """z' = v - alpha |v| z stiffness/g."""
+        """Compute z' = v - alpha |v| z stiffness/g."""
         if (z * v.conjugate()).real <= 0.0:
             return v
         speed = abs(v)
@@ -51,10 +77,11 @@ class ElastoPlastic(StribeckBristle):
         return v - (breakaway_share(abs(z), begins, curve) * speed / curve) * z
 
     def largest_rate(self, speed: float) -> float:
-        """speed stiffness/g times the largest d(alpha |z|)/d|z|, which is steepest halfway between z_ba and z_max.
+        """Return speed stiffness/g times a bound on d(alpha |z|)/d|z|.
 
-        With t = pi (|z| - middle)/(z_max - z_ba): (1 + sin t + t cos t)/2 + pi middle/(2 (z_max - z_ba)) cos t, its
-        first part never above 1.2.
+        The derivative is largest halfway between z_ba and z_max.
+        With t = pi (|z| - middle)/(z_max - z_ba) the derivative is
+        (1 + sin t + t cos t)/2 + pi middle/(2 (z_max - z_ba)) cos t, its first part never above 1.2.
         """
         curve = stribeck_curve(self, speed)
         begins = self.breakaway_ratio * self.mu_kinetic / curve
@@ -62,16 +89,16 @@ class ElastoPlastic(StribeckBristle):
         return steepest * self.bristle_stiffness * speed / curve
 
     def elastic_deflection(self) -> float:
-        """z_ba."""
+        """Return the breakaway deflection z_ba."""
         return self.breakaway_ratio * self.mu_kinetic / self.bristle_stiffness
 
     def elastic_unloading(self) -> bool:
-        """Always."""
+        """Return True: alpha is 0 wherever z.v <= 0."""
         return True
 
 
 def breakaway_share(size: float, begins: float, ends: float) -> float:
-    """alpha: the share of slip, 0 to 1, that bristles of deflection ``size`` do not follow."""
+    """Compute alpha: the share of slip, 0 to 1, that bristles of deflection ``size`` do not follow."""
     if size <= begins:
         return 0.0
     if size >= ends:

@@ -21,24 +21,24 @@ MARK = "broken plugin: "
 INTERNAL = "internal error: "
 """Beginning of the reason of a point that failed by a defect of the program."""
 LONGEST_TEXT = 500
-"""Characters of a foreign message that are shown."""
+"""Number of characters of a foreign message that are shown."""
 
 
 class BrokenPlugin(Exception):
-    """A law or method of another package that cannot be used; the message names it and the remedy."""
+    """Error of a law or method of another package that cannot be used; the message names it and the remedy."""
 
 
 class CannotCompile(Exception):
-    """A law that runs as Python but that numba cannot compile; the message names the law, the line and the remedy."""
+    """Error of a law that runs as Python but that numba cannot compile; the message names law, line and remedy."""
 
 
 def from_outside(law: type) -> bool:
-    """Whether a class is defined outside the package frictionlab."""
+    """Check whether a class is defined outside the package frictionlab."""
     return law.__module__.partition(".")[0] != "frictionlab"
 
 
 def files_of(law: type) -> set[str]:
-    """The source files of a law of another package and of its base classes outside frictionlab."""
+    """Return the source files of a law of another package and of its base classes outside frictionlab."""
     modules = {
         kind.__module__ for kind in law.__mro__ if issubclass(kind, FrictionLaw) and from_outside(kind)
     }
@@ -47,20 +47,20 @@ def files_of(law: type) -> set[str]:
 
 
 def describe_error(problem: BaseException, files: Collection[str]) -> str:
-    """Type and message of an error, and the innermost line of these files in its traceback."""
+    """Return type and message of an error, and the innermost line of these files in its traceback."""
     if isinstance(problem, SyntaxError) and problem.filename:
         return f"SyntaxError: {problem.msg}{source_line(problem.filename, problem.lineno or 1)}"
     return text_of_error(problem) + (innermost_line(problem, files) or "")
 
 
 def text_of_error(problem: BaseException) -> str:
-    """Type and message of an error."""
+    """Return type and message of an error."""
     text = re.sub(r"\s*For further information visit \S+$", "", str(problem))  # pydantic's
     return _cut(f"{type(problem).__name__}: {text}" if text else type(problem).__name__)
 
 
 def shown(value: object) -> str:
-    """A value as Python writes it."""
+    """Return a value as Python writes it."""
     return _cut(repr(value))
 
 
@@ -69,25 +69,25 @@ def _cut(text: str) -> str:
 
 
 def innermost_line(problem: BaseException, files: Collection[str]) -> str | None:
-    """The innermost line of these files in the traceback of an error, as ``source_line``; None for none."""
+    """Return the innermost line of these files in an error's traceback, as ``source_line``; None if none."""
     frames = [frame for frame in traceback.extract_tb(problem.__traceback__) if frame.filename in files]
     return source_line(frames[-1].filename, frames[-1].lineno or 1) if frames else None
 
 
 def source_line(file: str, line: int) -> str:
-    """File, line number and text of a source line, indented on a line of its own below a message."""
+    """Return file, line number and text of a source line, indented on a line of its own below a message."""
     return f"\n  {file}:{line}: {_cut(linecache.getline(file, line).strip())}"
 
 
 def definition_line(code: CodeType) -> str:
-    """The line of a function's ``def``, below its decorators, as ``source_line``."""
+    """Return the line of a function's ``def``, below its decorators, as ``source_line``."""
     lines = range(code.co_firstlineno, code.co_firstlineno + 20)
     found = (line for line in lines if "def " in linecache.getline(code.co_filename, line))
     return source_line(code.co_filename, next(found, code.co_firstlineno))
 
 
 def cannot_compile(law: type[FrictionLaw], message: str) -> CannotCompile:
-    """The error for a law that numba rejects: numba's reason in one line and the line of the law it refers to."""
+    """Return the error for a law that numba rejects: numba's reason in one line and the law's line it refers to."""
     spots = [spot for spot in _LOCATION.finditer(message) if _own_file(spot["file"], law)]
     spot = spots[0] if spots else None
     where = source_line(_own_file(spot["file"], law), int(spot["line"] or spot["number"])) if spot else ""
@@ -107,30 +107,30 @@ _REMEDY = (
 
 
 def _numba_reason(before: str, law: type[FrictionLaw]) -> str:
-    """The sentence of numba's message before it names a line; reworded where it would not help the author."""
+    """Return the sentence of numba's message before it names a line; reworded if it would not help the author."""
     lines = [line.strip() for line in before.splitlines() if line.strip()]
-    said = re.sub(r"(, defined|Raised)$", "", lines[-1] if lines else "").strip()
-    unknown = re.match(r"Unknown attribute '(\w+)' of type Numbers", said)
+    text = re.sub(r"(, defined|Raised)$", "", lines[-1] if lines else "").strip()
+    unknown = re.match(r"Unknown attribute '(\w+)' of type Numbers", text)
     if unknown and callable(getattr(law, unknown[1], None)):
         return f"a method cannot call the law's own method '{unknown[1]}': make that a function of the module"
     if unknown:
         return f"the law has no parameter or property '{unknown[1]}' that is a number"
-    return "numba does not support this line" if said.startswith(("During:", "^")) else said
+    return "numba does not support this line" if text.startswith(("During:", "^")) else text
 
 
 def home_of_law(law: type[FrictionLaw]) -> str:
-    """The module of a law; its file where a study names the law by file."""
+    """Return the module of a law, or its file if a study names the law by file."""
     return law.__module__ if not law.__module__.startswith(LAW_FILE) else ", ".join(sorted(files_of(law)))
 
 
 def _own_file(file: str, law: type[FrictionLaw]) -> str:
-    """The file of the law with this name, '' if none: numba gives paths relative to the current directory."""
+    """Return the law's file of this name, '' if none: numba gives paths relative to the current directory."""
     name = re.split(r"[\\/]", file)[-1]
     return next((own for own in files_of(law) if re.split(r"[\\/]", own)[-1] == name), "")
 
 
 def failing_law(problem: BaseException) -> str | None:
-    """A sentence naming the law of another package in whose lines an error arose; None if in none of them."""
+    """Return a sentence naming the law of another package whose lines raised an error; None if no such law did."""
     for law in _laws(FrictionLaw):  # type: ignore[type-abstract]  # only subclasses are read
         files = files_of(law)
         if innermost_line(problem, files):
@@ -139,7 +139,10 @@ def failing_law(problem: BaseException) -> str | None:
 
 
 def lost_error(law: FrictionLaw) -> str | None:
-    """As ``failing_law``, what sliding friction raises at some slip speed of 1e-6 to 1e6: machine code loses it."""
+    """Return, as ``failing_law``, the error that sliding friction raises at some slip speed of 1e-6 to 1e6.
+
+    Machine code loses such an error.
+    """
     for speed in (10.0 ** (tenth / 10.0) for tenth in range(-60, 61)):
         try:
             law.sliding_friction(speed)
@@ -149,7 +152,7 @@ def lost_error(law: FrictionLaw) -> str | None:
 
 
 def outside_files(problem: BaseException) -> set[str]:
-    """The files in the traceback of an error, without those of frictionlab, of pydantic and of Python itself."""
+    """Return the files in an error's traceback, without those of frictionlab, of pydantic and of Python itself."""
     names = {frame.filename for frame in traceback.extract_tb(problem.__traceback__)}
     return {name for name in names if not name.startswith(("<", _PACKAGE)) and not _is_pythons(name)}
 

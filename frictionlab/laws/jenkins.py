@@ -13,12 +13,29 @@ from frictionlab.laws.decay import exp_decay
 class Jenkins(CompliantLaw):
     """Jenkins friction: a spring that deflects with the slip up to the force mu, in series with a Coulomb slider.
 
-    mu [-], > 0: the slider's friction coefficient.
-    stiffness [1/scene length], presliding_length [scene length] (mu/stiffness) or contact_stiffness [K_1], > 0.
-
     In the plane the slider moves along the spring while the spring force is mu: its path is a tractrix.
-    Sources: Jenkins (1962); Griffin (1980); the spring is the contact stiffness of Menq, Bielak & Griffin (1986).
 
+    Parameters
+    ----------
+    mu : float, > 0
+        Friction coefficient of the slider [-].
+    stiffness : float, > 0, optional
+        Stiffness: friction coefficient per deflection [1/scene length]. Exactly one is given: ``stiffness``,
+        ``presliding_length`` or ``contact_stiffness``.
+    presliding_length : float, > 0, optional
+        Presliding length, mu/stiffness [scene length].
+    contact_stiffness : float, > 0, optional
+        Contact stiffness, ``stiffness`` times normal load [K_1].
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction, as in ``BristleLaw``.
+
+    References
+    ----------
+    Sources: Jenkins (1962); Griffin (1980); the spring is the contact stiffness of Menq, Bielak & Griffin
+    (1986).
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> law = fl.Jenkins(mu=0.4, stiffness=40)
@@ -31,50 +48,53 @@ class Jenkins(CompliantLaw):
 
     @property
     def reach(self) -> float:
-        """The deflection at which the slider moves [scene length]."""
+        """Deflection at which the slider moves [scene length]."""
         return self.mu / self.bristle_stiffness
 
     def sliding_friction(self, speed: float) -> float:
-        """mu, at every speed."""
+        """Return mu, at every speed."""
         return self.mu
 
     def rate(self, v: Any, z: Any) -> Any:
-        """v; where slip would stretch the spring beyond yield, v without its component along the spring."""
+        """Return v; if slip would stretch the spring beyond yield, v without its component along the spring."""
         along = (z * v.conjugate()).real
         if along <= 0.0 or abs(z) < self.reach:
             return v
         return v - (along / (z * z.conjugate()).real) * z
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """stiffness z."""
+        """Return stiffness z."""
         return self.bristle_stiffness * z
 
     def constant_sliding_friction(self) -> bool:
-        """Always."""
+        """Return True: the coefficient is mu at every speed."""
         return True
 
     def largest_deflection(self) -> float:
-        """The yield deflection."""
+        """Return the yield deflection."""
         return self.reach
 
     def largest_rate(self, speed: float) -> float:
-        """In the plane, where the spring turns towards the slip: speed/yield deflection."""
+        """Return speed/yield deflection: in the plane, where the spring turns towards the slip."""
         return speed / self.reach
 
     def rate_independent(self) -> bool:
-        """Always."""
+        """Return True: friction depends on the path of the slip alone."""
         return True
 
     def passive(self) -> bool:
-        """Always: work that the spring does not store is dissipated by the slider."""
+        """Return True: work that the spring does not store is dissipated by the slider."""
         return True
 
     def exact_path(self) -> bool:
-        """Always."""
+        """Return True: ``deflected`` is exact."""
         return True
 
     def deflected(self, z: Any, path: Any) -> Any:
-        """Elastic up to yield, then the tractrix: tan(angle/2) falls as exp(-path/yield deflection)."""
+        """Compute the deflection after a straight path: elastic up to yield, then along the tractrix.
+
+        On the tractrix tan(angle/2) falls as exp(-path/yield deflection).
+        """
         length = abs(path)
         if length == 0.0:
             return z
@@ -96,17 +116,17 @@ class Jenkins(CompliantLaw):
         )
 
     def saturation_path(self, z: float, side: float) -> float:
-        """The path to yield."""
+        """Compute the length of slip up to yield."""
         return self.reach - side * z
 
     def elastic_deflection(self) -> float:
-        """The yield deflection."""
+        """Return the yield deflection."""
         return self.reach
 
     def elastic_unloading(self) -> bool:
-        """Always."""
+        """Return True: the spring follows the slip wherever z.v <= 0."""
         return True
 
     def yield_deflection(self) -> float:
-        """The yield deflection."""
+        """Return the yield deflection."""
         return self.reach

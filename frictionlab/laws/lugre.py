@@ -14,16 +14,40 @@ class LuGre(StribeckBristle):
     z' = v - |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v,
     g = mu_kinetic + (mu_static - mu_kinetic) exp(-(|v|/stribeck_speed)^stribeck_exponent).
 
-    mu_kinetic [-], > 0: coefficient in quick sliding, viscosity apart.
-    mu_static [-], >= mu_kinetic: at vanishing speed; mu_kinetic where left out.
-    stribeck_speed [scene velocity], > 0 (1); stribeck_exponent [-], > 0 (2).
-    stiffness [1/scene length], presliding_length [scene length] (mu_kinetic/stiffness) or contact_stiffness [K_1].
-    damping [1/scene velocity] or contact_damping [M omega_1], >= 0 (0).
-    viscosity [1/scene velocity], >= 0 (0).
+    Parameters
+    ----------
+    mu_kinetic : float, > 0
+        Friction coefficient in quick sliding, viscosity apart [-].
+    mu_static : float, >= mu_kinetic, optional
+        Friction coefficient at vanishing speed [-]; ``mu_kinetic`` if left out.
+    stribeck_speed : float, > 0, default 1
+        Speed over which the coefficient falls [scene velocity].
+    stribeck_exponent : float, > 0, default 2
+        Exponent of the fall [-]; 2 makes the fall a Gaussian.
+    viscosity : float, >= 0, default 0
+        Viscosity [1/scene velocity]: adds viscosity*speed to the coefficient.
+    stiffness : float, > 0, optional
+        Stiffness: friction coefficient per deflection [1/scene length]. Exactly one is given: ``stiffness``,
+        ``presliding_length`` or ``contact_stiffness``.
+    presliding_length : float, > 0, optional
+        Presliding length, mu_kinetic/stiffness [scene length].
+    contact_stiffness : float, > 0, optional
+        Contact stiffness, ``stiffness`` times normal load [K_1].
+    damping : float, >= 0, optional
+        Damping: friction coefficient per rate of deflection [1/scene velocity]; 0 if neither it nor
+        ``contact_damping`` is given.
+    contact_damping : float, >= 0, optional
+        Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
-    Sources: Canudas de Wit, Olsson, Åström & Lischinsky (1995); in the plane Velenis, Tsiotras, Canudas de Wit &
-    Sorine (2005); passivity: Barahanov & Ortega (2000).
+    References
+    ----------
+    Sources: Canudas de Wit, Olsson, Åström & Lischinsky (1995); in the plane Velenis, Tsiotras, Canudas de
+    Wit & Sorine (2005); passivity: Barahanov & Ortega (2000).
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> law = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2, stiffness=40)
@@ -34,16 +58,19 @@ class LuGre(StribeckBristle):
     in_words: ClassVar[str] = "LuGre"
 
     def rate(self, v: Any, z: Any) -> Any:
-        """z' = v - |v| z stiffness/g."""
+        """Compute z' = v - |v| z stiffness/g."""
         speed = abs(v)
         return v - (self.bristle_stiffness * speed / stribeck_curve(self, speed)) * z
 
     def exact_path(self) -> bool:
-        """Where g is the same at every speed."""
+        """Check whether g is the same at every speed; ``deflected`` is then exact."""
         return self.peak == self.mu_kinetic
 
     def deflected(self, z: Any, path: Any) -> Any:
-        """Towards mu_kinetic/stiffness as exp(-path stiffness/mu_kinetic), for constant g."""
+        """Compute the deflection after a straight path for constant g.
+
+        It tends to mu_kinetic/stiffness as exp(-path stiffness/mu_kinetic).
+        """
         length = abs(path)
         if length == 0.0:
             return z

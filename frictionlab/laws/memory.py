@@ -455,7 +455,9 @@ class MemoryLaw(FrictionLaw, ABC):
         return False
 
     def remembers_stick(self) -> bool:
-        """Check whether each deflection remembers if it sticks (it follows the slip) or slips (it moves at ``rate``).
+        """Check whether each deflection remembers if it sticks or slips.
+
+        A deflection that sticks follows the slip; one that slips moves at ``rate``.
 
         Returns
         -------
@@ -515,7 +517,9 @@ class MemoryLaw(FrictionLaw, ABC):
         return math.inf
 
     def rate_jumps(self, directions: int) -> bool:
-        """Check whether the rate of a memory may jump while slip does not reverse: that of deflections may, at yield.
+        """Check whether the rate of a memory may jump while slip does not reverse.
+
+        That of deflections may, at yield.
 
         Parameters
         ----------

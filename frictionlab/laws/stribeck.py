@@ -16,18 +16,36 @@ EXPONENTIAL, RATIONAL, CUBIC = 0.0, 1.0, 2.0
 class Stribeck(SlidingLaw):
     """Stribeck friction: falls from mu_static at rest to mu_kinetic at high speed, along one of four curves.
 
-    mu_kinetic [-], >= 0: coefficient at high speed; for the cubic curve its minimum, at stribeck_speed.
-    mu_static [-], >= mu_kinetic, > 0: coefficient at rest and at vanishing speed.
-    stribeck_speed [scene velocity], > 0: speed of the fall.
-    stribeck_exponent [-], > 0: of the exponential curve alone, 2 where left out.
-    viscosity [1/scene velocity], >= 0: adds viscosity*speed to the coefficient.
-    curve: with u = speed/stribeck_speed and d = mu_static - mu_kinetic,
-    exponential mu_kinetic + d exp(-u^stribeck_exponent), hyperbolic mu_kinetic + d/(1 + u),
-    hess-soom mu_kinetic + d/(1 + u^2), cubic mu_static - d (3 u - u^3)/2, which grows without bound.
+    With u = speed/stribeck_speed and d = mu_static - mu_kinetic the curves are
 
+    - ``exponential``: mu_kinetic + d exp(-u^stribeck_exponent)
+    - ``hyperbolic``: mu_kinetic + d/(1 + u)
+    - ``hess-soom``: mu_kinetic + d/(1 + u^2)
+    - ``cubic``: mu_static - d (3 u - u^3)/2, which grows without bound
+
+    Parameters
+    ----------
+    mu_kinetic : float, >= 0
+        Friction coefficient at high speed [-]; for the cubic curve its minimum, at stribeck_speed.
+    mu_static : float, > 0 and >= mu_kinetic
+        Friction coefficient at rest and at vanishing speed [-].
+    stribeck_speed : float, > 0, default 1
+        Speed over which the coefficient falls [scene velocity].
+    stribeck_exponent : float, > 0, optional
+        Exponent of the exponential curve [-], 2 if left out; the other curves have none.
+    viscosity : float, >= 0, default 0
+        Viscosity [1/scene velocity]: adds viscosity*speed to the coefficient.
+    curve : {"exponential", "hyperbolic", "hess-soom", "cubic"}, default "exponential"
+        Curve along which the coefficient falls.
+
+    References
+    ----------
     Sources: exponential: Bo & Pavelescu (1982), Armstrong-Hélouvry (1991); hyperbolic: Leine, van Campen, de
-    Kraker & van den Steen (1998); hess-soom: Hess & Soom (1990); cubic: Thomsen (1999), Thomsen & Fidlin (2003).
+    Kraker & van den Steen (1998); hess-soom: Hess & Soom (1990); cubic: Thomsen (1999), Thomsen & Fidlin
+    (2003).
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> law = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2)
@@ -63,16 +81,16 @@ class Stribeck(SlidingLaw):
 
     @property
     def family(self) -> float:
-        """The formula of the curve as a number for kernels."""
+        """Number that stands for the formula of the curve in kernels."""
         return {"exponential": EXPONENTIAL, "cubic": CUBIC}.get(self.curve, RATIONAL)
 
     @property
     def power(self) -> float:
-        """The exponent of speed in the formula."""
+        """Exponent of speed in the formula."""
         return self.stribeck_exponent or (2.0 if self.curve == "hess-soom" else 1.0)
 
     def sliding_friction(self, speed: float) -> float:
-        """The curve, viscosity included."""
+        """Compute the curve, viscosity included."""
         u = speed / self.stribeck_speed
         if self.family == CUBIC:
             left = 1.0 - 0.5 * u * (3.0 - u * u)
@@ -83,22 +101,22 @@ class Stribeck(SlidingLaw):
         return self.mu_kinetic + (self.mu_static - self.mu_kinetic) * left + self.viscosity * speed
 
     def constant_sliding_friction(self) -> bool:
-        """Where mu_static = mu_kinetic and viscosity = 0."""
+        """Check whether mu_static = mu_kinetic and viscosity = 0."""
         return self.mu_static == self.mu_kinetic and self.viscosity == 0.0
 
     def monotone(self) -> bool:
-        """Where viscosity outweighs the fall at every speed."""
+        """Check whether viscosity outweighs the fall at every speed."""
         return self.steepest_fall() == 0.0
 
     def steepest_fall(self) -> float:
-        """From the steepest slope of each curve; infinite for an exponent below one."""
+        """Return the steepest slope of the curve less viscosity; infinite for an exponent below one."""
         drop = self.mu_static - self.mu_kinetic
         if drop == 0.0:
             return 0.0
         return max(0.0, drop / self.stribeck_speed * self._steepest() - self.viscosity)
 
     def _steepest(self) -> float:
-        """The largest slope over u of the curve that falls from 1 to 0."""
+        """Return the largest slope over u of the curve that falls from 1 to 0."""
         if self.family == CUBIC:
             return 1.5
         if self.family == RATIONAL:

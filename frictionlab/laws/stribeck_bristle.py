@@ -12,16 +12,37 @@ from frictionlab.laws.decay import exp_power_decay, steepest_slope
 
 
 class StribeckBristle(DampedLaw, ABC):
-    """A bristle law whose steady friction is a Stribeck curve g (Bo & Pavelescu, 1982), plus viscosity.
+    """Bristle law whose steady friction is a Stribeck curve g (Bo & Pavelescu, 1982), plus viscosity.
 
     g = mu_kinetic + (mu_static - mu_kinetic) exp(-(|v|/stribeck_speed)^stribeck_exponent),
     friction = stiffness z + damping z' + viscosity v.
 
-    mu_kinetic [-], > 0: coefficient in quick sliding, viscosity apart.
-    mu_static [-], >= mu_kinetic: at vanishing speed; mu_kinetic where left out.
-    stribeck_speed [scene velocity], > 0: speed of the fall.
-    stribeck_exponent [-], > 0: 2 makes the fall a Gaussian.
-    viscosity [1/scene velocity], >= 0: adds viscosity*speed to the coefficient.
+    Parameters
+    ----------
+    mu_kinetic : float, > 0
+        Friction coefficient in quick sliding, viscosity apart [-].
+    mu_static : float, >= mu_kinetic, optional
+        Friction coefficient at vanishing speed [-]; ``mu_kinetic`` if left out.
+    stribeck_speed : float, > 0, default 1
+        Speed over which the coefficient falls [scene velocity].
+    stribeck_exponent : float, > 0, default 2
+        Exponent of the fall [-]; 2 makes the fall a Gaussian.
+    viscosity : float, >= 0, default 0
+        Viscosity [1/scene velocity]: adds viscosity*speed to the coefficient.
+    stiffness : float, > 0, optional
+        Stiffness: friction coefficient per deflection [1/scene length]. Exactly one is given: ``stiffness``,
+        ``presliding_length`` or ``contact_stiffness``.
+    presliding_length : float, > 0, optional
+        Presliding length, mu_kinetic/stiffness [scene length].
+    contact_stiffness : float, > 0, optional
+        Contact stiffness, ``stiffness`` times normal load [K_1].
+    damping : float, >= 0, optional
+        Damping: friction coefficient per rate of deflection [1/scene velocity]; 0 if neither it nor
+        ``contact_damping`` is given.
+    contact_damping : float, >= 0, optional
+        Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
+    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+        Extension to the plane of the law of one direction, as in ``BristleLaw``.
     """
 
     mu_kinetic: Positive
@@ -36,57 +57,57 @@ class StribeckBristle(DampedLaw, ABC):
             yield f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"
 
     def saturated_friction(self) -> float:
-        """mu_kinetic."""
+        """Return mu_kinetic."""
         return self.mu_kinetic
 
     @property
     def peak(self) -> float:
-        """The coefficient at vanishing speed [-]."""
+        """Coefficient at vanishing speed [-]."""
         return self.mu_kinetic if self.mu_static is None else self.mu_static
 
     def sliding_friction(self, speed: float) -> float:
-        """The Stribeck curve, and viscosity."""
+        """Compute the Stribeck curve plus viscosity."""
         return stribeck_curve(self, speed) + self.viscosity * speed
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Spring, dashpot and viscosity."""
+        """Compute the sum of spring, dashpot and viscosity."""
         return self.bristle_stiffness * z + self.bristle_damping * dz + self.viscosity * v
 
     def constant_sliding_friction(self) -> bool:
-        """Where mu_static = mu_kinetic and viscosity = 0."""
+        """Check whether mu_static = mu_kinetic and viscosity = 0."""
         return self.peak == self.mu_kinetic and self.viscosity == 0.0
 
     def largest_deflection(self) -> float:
-        """mu_static/stiffness: the steady deflection at vanishing speed, larger than at high speed."""
+        """Return mu_static/stiffness: the steady deflection at vanishing speed, larger than at high speed."""
         return self.peak / self.bristle_stiffness
 
     def largest_rate(self, speed: float) -> float:
-        """stiffness*speed/g."""
+        """Return stiffness*speed/g."""
         return self.bristle_stiffness * speed / stribeck_curve(self, speed)
 
     def steepest_fall(self) -> float:
-        """At the inflection of the curve, less viscosity."""
+        """Return the slope of the curve at its inflection, less viscosity."""
         drop = self.peak - self.mu_kinetic
         if drop == 0.0:
             return 0.0
         return max(0.0, drop / self.stribeck_speed * steepest_slope(self.stribeck_exponent) - self.viscosity)
 
     def damps_across(self, speed: float) -> bool:
-        """damping^2 speed/mu_kinetic <= 4 (damping + viscosity)."""
+        """Check that damping^2 speed/mu_kinetic <= 4 (damping + viscosity)."""
         lost = self.bristle_damping + self.viscosity
         return super().damps_across(speed) and self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost
 
     def rate_independent(self) -> bool:
-        """Where g is the same at every speed and there is neither damping nor viscosity."""
+        """Check whether g is the same at every speed and there is neither damping nor viscosity."""
         return self.constant_sliding_friction() and self.bristle_damping == 0.0
 
     def passive(self) -> bool:
-        """viscosity >= damping*(mu_static/mu_kinetic - 1), the bound of Barahanov & Ortega (2000)."""
+        """Check that viscosity >= damping*(mu_static/mu_kinetic - 1), the bound of Barahanov & Ortega (2000)."""
         return self.viscosity >= self.bristle_damping * (self.peak / self.mu_kinetic - 1.0)
 
 
 def stribeck_curve(law: Any, speed: float) -> float:
-    """g: from mu_static at vanishing speed down to mu_kinetic."""
+    """Compute g: from mu_static at vanishing speed down to mu_kinetic."""
     drop = law.peak - law.mu_kinetic
     if drop == 0.0:
         return law.mu_kinetic

@@ -1,11 +1,12 @@
 """Steps in the logarithm of a slip that creeps.
 
-Friction by scalars may grow as asinh(slip/scale) with a scale of 1e-40 of the belt speed: a contact that seems at
-rest creeps, and how fast goes exponentially with the force on it. In w = scale sinh(q) that friction is linear in q,
-in the plane along q, and a linearly implicit step over a creep is as long as over anything linear. A step that starts
-at so slow a slip takes, in the place of w, the number w0 + J0 (q - q0), with J = dw/dq: at its start that is the slip
-and goes as fast, so that all blocks of the step are those of w itself. That J changes within the step is left to its
-error: slower than ``BELOW`` of the accuracy, slip is known well enough by far.
+Friction by scalars may grow as asinh(slip/scale) with a scale of 1e-40 of the belt speed. A contact that
+seems at rest then creeps, at a speed that is exponential in the force on it. In w = scale sinh(q) that
+friction is linear in q (in the plane: along q), and a linearly implicit step over a creep can be as long as
+over any linear motion. A step from such a slow slip integrates the number w0 + J0 (q - q0) in place of w,
+with J = dw/dq. At its start this number and its rate are those of the slip, so that all blocks of the step
+are those of w itself. The change of J within the step counts as error of the step: below ``BELOW`` times the
+accuracy, slip is known well enough by far.
 """
 
 from __future__ import annotations
@@ -19,23 +20,24 @@ from frictionlab.motion.equation import Flow, instant_near, normal_load
 from frictionlab.motion.maps.rates import U, Work, friction_in_mode
 
 BELOW = 30.0
-"""Of the accuracy: a slip slower than that is followed by its logarithm."""
+"""Slip slower than this many times the accuracy is followed by its logarithm."""
 WITHOUT_INERTIA = 3e-4
-"""Of that: from a slip slower than this to one as slow nothing is left of inertia."""
+"""Share of that slip below which inertia has no effect on a change to another slip as slow."""
 HALVES = 4.3
-"""Where asinh is half of what its slope at zero makes of it."""
+"""Argument at which asinh is half of its linear term."""
 CLOSE = 0.1
-"""By how much the logarithm of such a slip may be in error: within the accuracy all slips look the same."""
+"""Largest error of the logarithm of such a slip; within the accuracy all slips look the same."""
 SLOWEST = -150.0
-"""Decimal logarithm of the slowest slip that is told from none: kernels take squares of it."""
+"""Decimal logarithm of the slowest slip that differs from none: kernels take squares of it."""
 FASTEST = 1e30
-"""Of a slip: a stage that is faster is as wrong."""
+"""Largest slip of a stage; a faster one is as wrong."""
 SCALE, SLOW = 0, 1
-"""Places in ``Work.creep``: the scale, 0 where a step takes slip as it is; how slow a slip creeps."""
+"""Places in ``Work.creep``: scale of the logarithm, 0 for a step that integrates slip itself; largest slip
+that creeps."""
 
 
 def _stays_quick(flow: Flow, w: Any, a: Any, work: Work) -> None:
-    """Nothing but scalars is steep enough."""
+    """Do nothing: only friction by scalars is steep enough for creep."""
 
 
 def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
@@ -64,16 +66,16 @@ def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
 
 
 note_creep = by_scalars(_stays_quick, _may_creep)
-"""note_creep(flow, w, a, work): whether a step from slip w, which goes at the rate a, takes its logarithm, and on
-which scale; ``work.memory`` is that at the start."""
+"""note_creep(flow, w, a, work): decide whether a step from slip w with rate a integrates its logarithm, and
+on which scale; ``work.memory`` is the memory at the start."""
 
 
 creeps = by_scalars(lambda law, work: False, lambda law, work: work.creep[SCALE] > 0.0)
-"""creeps(law, work): whether a step from ``work.start`` takes the logarithm of slip.
+"""creeps(law, work): whether a step from ``work.start`` integrates the logarithm of slip.
 
-Slip then changes much sooner than any step sees, and friction with it. By the balance of momentum friction's
-impulse is that of the forces that pull, less what slip has gained: that is followed in its place.
-"""
+Slip then changes much sooner than a step resolves, and friction with it. By the balance of momentum, the
+impulse of friction is that of the pulling forces less the gain of slip. The step integrates that impulse
+instead."""
 
 
 @inner
@@ -87,7 +89,7 @@ def _while_slow(law: Any, work: Work, a: Any) -> float:
 
 
 longest_while_slow = by_scalars(lambda law, work, a: math.inf, lambda law, work, a: _while_slow(law, work, a))
-"""longest_while_slow(law, work, a): the longest step worth a trial from a slow slip that goes at the rate a."""
+"""longest_while_slow(law, work, a): longest step worth a trial from a slow slip with rate a."""
 
 
 # --- w = scale sinh(q) along q, and J -------------------------------------------------------------------------------
@@ -173,14 +175,16 @@ def _velocity_error(work: Work, error: Any) -> float:
 
 
 to_step_variable = by_scalars(lambda law, work, w: w, lambda law, work, w: _step_variable(work, w))
-"""to_step_variable(law, work, w): what a step from ``work.start`` takes in the place of a velocity held."""
+"""to_step_variable(law, work, w): number that a step from ``work.start`` integrates in place of the velocity
+w."""
 from_step_variable = by_scalars(lambda law, work, p: p, lambda law, work, p: _velocity_of(work, p))
-"""from_step_variable(law, work, p): the other way round."""
+"""from_step_variable(law, work, p): velocity that belongs to the number p which a step integrates."""
 step_variable_rate = by_scalars(
     lambda law, work, w, a: a, lambda law, work, w, a: _step_variable_rate(work, w, a)
 )
-"""step_variable_rate(law, work, w, a): its rate where the velocity held is w and goes at the rate a."""
+"""step_variable_rate(law, work, w, a): rate of that number at velocity w with rate a."""
 velocity_error = by_scalars(
     lambda law, work, error: length(error), lambda law, work, error: _velocity_error(work, error)
 )
-"""velocity_error(law, work, error): how far the velocity at ``work.end`` is off, from the error of what the step took."""
+"""velocity_error(law, work, error): error of the velocity at ``work.end``, from the error of the integrated
+number."""

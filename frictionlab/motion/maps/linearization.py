@@ -1,7 +1,7 @@
-"""The blocks of a step: difference quotients of a law's rates and friction, by slip and by what it remembers.
+"""Blocks of a step: difference quotients of a law's rates and friction, by slip and by its memory.
 
-Of deflections they are central quotients on the scale of steady sliding. Friction of a scalar law is steep where it
-creeps: there a quotient by slip is taken on the scale of the slip itself, as far as rounding leaves it.
+For deflections they are central quotients on the scale of steady sliding. Friction of a scalar law is steep
+where it creeps: there a quotient by slip is taken on the scale of the slip itself, as far as rounding allows.
 """
 
 from __future__ import annotations
@@ -60,15 +60,18 @@ from frictionlab.motion.relaxing import elements_of, relaxing_rate
 from frictionlab.scene.body import BodyNumbers
 
 NUDGE = 1e-5
-"""Of a deflection in steady sliding, of a scalar or of a creeping slip, for a difference quotient."""
+"""Shift for a difference quotient, relative to a deflection in steady sliding, to a scalar or to a creeping
+slip."""
 FINE = 1e-7
-"""Of a deflection that may have a corner near: its law has corners, and little else that bends."""
+"""Shift relative to a deflection that may have a corner near: its law has corners, and little other
+curvature."""
 LOST = 1e-9
-"""Of friction: a smaller difference is lost to rounding; of the motion's speed: a slip too slow to matter."""
+"""Smallest relative difference of friction that rounding leaves; slip too slow to matter, relative to the
+speed of the motion."""
 
 
 def _away_in_the_plane(flow: Flow, least: float, work: Work, w: complex) -> complex:
-    """Slip far enough from where what gives way is unloaded."""
+    """Return a slip far enough from the one at which deflections that give way are unloaded."""
     for k in range(count_of(flow.law)):
         z = work.memory[k]
         size = math.sqrt(z.real * z.real + z.imag * z.imag)
@@ -87,7 +90,7 @@ _away = by_dimension(
 
 @inner
 def _keep_by_slip(work: Work, n: int, zero: Any) -> None:
-    """Make the blocks of the columns: by each direction of slip, the rates of all numbers, then friction."""
+    """Make the blocks of the columns: for each direction of slip, the rates of all numbers, then friction."""
     for k in range(n):
         keep(work.jacobian, 3 * k, from_columns(work.columns[k], work.columns[n + 1 + k]), zero)
     keep(work.jacobian, 3 * n, from_columns(work.columns[n], work.columns[2 * n + 1]), zero)
@@ -114,19 +117,19 @@ def _deflections_by_slip(flow: Flow, w: Any, work: Work, zero: Any) -> Any:
 
 @inner
 def _least(flow: Flow, w: Any) -> float:
-    """By how much a slip is moved for a quotient."""
+    """Return the shift of a slip for a quotient."""
     return NUDGE * length(w) + LOST * (swing_of(flow.body) + abs(flow.belt_speed))
 
 
 _beside_rest = by_dimension(
     lambda least, w: max(w, least) if w >= 0.0 else min(w, -least), lambda least, w: w
 )
-"""_beside_rest(least, w): a slip on the line at least so fast, on its own side."""
+"""_beside_rest(least, w): slip on the line, at least so fast, on its own side."""
 
 
 @inner
 def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, zero: Any) -> float:
-    """The quotient of friction by slip on the scale of the slip; returns by how much that was moved."""
+    """Write the quotient of friction by slip on the scale of the slip, and return the shift of the slip."""
     n, swing = count_of(flow.law), swing_of(flow.body) + abs(flow.belt_speed)
     scale, slow, least = work.creep[SCALE], work.creep[SLOW], LOST * swing
     # a slip that is given is at rest for a moment alone
@@ -162,7 +165,8 @@ def _scalars_by_slip(flow: Flow, w: Any, work: Work, zero: Any) -> Any:
 
 
 _by_slip = by_scalars(_deflections_by_slip, _scalars_by_slip)
-"""_by_slip(flow, w, work, zero): B of every number, and G; returns the slip at which to ask for the other blocks."""
+"""_by_slip(flow, w, work, zero): fill B of every number, and G; returns the slip at which to take the other
+blocks."""
 
 
 class Sides(NamedTuple):
@@ -176,7 +180,7 @@ class Sides(NamedTuple):
 
 @fast
 def _sides(flow: Flow, w: Any, k: int, shift: Any, work: Work) -> Sides:
-    """Of the k-th number, moved by a shift there and back."""
+    """Return rate and friction for the k-th number shifted both ways."""
     law, here, moving = flow.law, work.memory[k], work.moving[k]
     work.memory[k] = here + shift
     ahead = rate_in_mode(law, work, k, w)
@@ -192,7 +196,7 @@ def _sides(flow: Flow, w: Any, k: int, shift: Any, work: Work) -> Sides:
 
 @inner
 def _keep_by_number(work: Work, k: int, zero: Any) -> None:
-    """Make A and F of the columns: by each direction of a number its rate, then friction."""
+    """Make A and F of the columns: for each direction of a number its rate, then friction."""
     keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), zero)
     keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), zero)
 
@@ -210,7 +214,7 @@ def _centrally(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
 
 @inner
 def _flatter(ahead: Any, here: Any, behind: Any, h: float) -> Any:
-    """The central quotient; where its two sides disagree there is a corner, and the flatter side counts."""
+    """Return the central quotient, or the flatter one-sided one at a corner, where both sides disagree."""
     rise, fall = (ahead - here) / h, (here - behind) / h
     if length(rise - fall) <= 0.1 * (length(rise) + length(fall)):
         return 0.5 * (rise + fall)
@@ -219,7 +223,9 @@ def _flatter(ahead: Any, here: Any, behind: Any, h: float) -> Any:
 
 @inner
 def _flatly(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
-    """Of a deflection by its own rate, which may have a corner that the law does not declare."""
+    """Write A and F of a deflection by its own rate, which may have a corner that the law does not
+    declare.
+    """
     nudge = FINE * work.size[k]
     friction = friction_of(flow.law, work.memory, work.moving, w)
     for column in range(dimension(zero)):
@@ -244,7 +250,9 @@ def _deflection(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
 
 @inner
 def _scalar(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
-    """Of a number without direction, on the scale of what it is: it may range over decades."""
+    """Write A and F of a number without direction, shifted by a share of its value: it may range over
+    decades.
+    """
     least = 0.0 if work.positive[k] > 0.0 else LOST * work.size[k]
     shift = max(NUDGE * abs(work.memory[k]), least)
     friction = friction_of(flow.law, work.memory, work.moving, w)
@@ -256,18 +264,19 @@ def _scalar(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
 
 
 _by_memory = by_law(_bristle, _bristle, _deflection, _scalar)
-"""_by_memory(flow, w, k, work, zero): A and F of one number; the rates of all are in ``work.moving`` and stay."""
+"""_by_memory(flow, w, k, work, zero): fill A and F of one number; the rates of all stand in ``work.moving``
+and stay."""
 
 
 @inner
 def _swell(body: BodyNumbers, now: Instant) -> float:
-    """Rate of the normal load by which friction moves the mass."""
+    """Return the rate of the normal load by which friction moves the mass."""
     return 0.0 if body.prescribed else normal_load_rate(body, now)
 
 
 @inner
 def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) -> None:
-    """In time the loads change, and the slip of a mass whose deviation stays as it is; rub: the coefficient."""
+    """Fill the slope in time at constant deviation: loads and slip change; rub: friction coefficient."""
     body, n = flow.body, count_of(flow.law)
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
     turn = turn + 0.0 * zero
@@ -282,7 +291,7 @@ def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, zero: An
 
 @inner
 def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) -> None:
-    """In time the loads change, and the deviation of a mass whose slip stays as it is."""
+    """Fill the slope in time at constant slip: loads and deviation change."""
     body = flow.body
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
     turn = turn + 0.0 * zero
@@ -299,12 +308,14 @@ def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) ->
 
 
 _slope = by_scalars(_slope_of_deviation, _slope_of_slip)
-"""_slope(flow, now, rub, work, zero): fill ``work.slope`` by the state that is held fixed."""
+"""_slope(flow, now, rub, work, zero): fill ``work.slope``, at constant numbers of the state."""
 
 
 @inner
 def _by_share(work: Work, flow: Flow, now: Instant, w: Any, zero: Any) -> None:
-    """What a changing load adds where the contact keeps its stiffness: its share is a part of every deflection."""
+    """Add the effect of a changing load on a contact of constant stiffness: its share divides every
+    deflection.
+    """
     law, body, n = flow.law, flow.body, count_of(flow.law)
     share, rate, bend = work.share[0], work.share[1], work.share[2]
     # With n = N/N_mean the state holds zeta = z/n, and zeta' = z'/n - (n'/n) zeta: -n'/n more in its own block, and

@@ -1,10 +1,11 @@
-"""The equation of motion of a mass and of what its friction remembers: deflections or scalars, one or several.
+"""Equation of motion of a mass and of the memory of its contact: deflections or scalars, one or several.
 
-On the line every quantity is a float, in the plane a complex number; a scalar is real in both. The mass moves by its
-deviation y from the harmonic reference and by u = y'; friction's impulse is integrated along. Beside scalars the slip
-w itself takes the place of u: such a contact may creep at 1e-26 of the belt speed where others stick, and as a
-difference of two velocities that would be lost. A deflection goes by its law's own rate, but for two kinds that have
-corners: one that follows the slip and one that yields are held so to the end of a step.
+On the line every quantity is a float, in the plane a complex number; a scalar is real in both. The mass moves
+by its deviation y from the harmonic reference and by u = y'. The impulse of friction is integrated with them.
+With scalars the slip w itself takes the place of u: such a contact may creep at 1e-26 of the belt speed where
+others stick, and a difference of two velocities would lose that. A deflection moves by its law's own rate,
+except for two kinds that have corners: a deflection that follows the slip and one that yields are held so to
+the end of a step.
 """
 
 from __future__ import annotations
@@ -36,16 +37,20 @@ from frictionlab.motion.relaxing import along_x1, elements_of, relaxing_force, r
 from frictionlab.scene.body import BodyNumbers
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
-"""Places of the mass: its deviation, the velocity of that (beside scalars: slip), the integral of friction in shares
-of the mean normal load; then memory."""
+"""Places of the mass in a state: its deviation; the velocity of that, with scalars the slip; the integral of
+friction in shares of the mean normal load. The memory comes next."""
 
 FOLLOWS, SMOOTH, YIELDS = -1.0, 0.0, 1.0
-"""Modes of a deflection: it moves with the slip; by its law's rate; on its yield surface, or gives way before it."""
+"""Modes of a deflection: it follows the slip; it moves by its law's rate; it is on its yield surface, or
+gives way before it."""
 
 
 class Work(NamedTuple):
-    """Room for one step; a state is the mass (Y, U, IMPULSE) and, from MEMORY on, n numbers remembered, and last the
-    forces of what of the body relaxes."""
+    """Arrays for one step of a state.
+
+    A state is the mass (Y, U, IMPULSE), from MEMORY on the n numbers of the memory, and last the forces of
+    relaxing springs.
+    """
 
     start: Any  # where the step starts
     end: Any  # where it ends
@@ -74,20 +79,20 @@ class Work(NamedTuple):
 
 
 kind_of_memory = by_scalars(lambda law, zero: zero, lambda law, zero: 0.0)
-"""kind_of_memory(law, zero): zero of the kind that the law remembers; zero: one of the kind of a slip."""
+"""kind_of_memory(law, zero): zero of the type of the memory; zero: one of the type of a slip."""
 
 as_memory = by_scalars(lambda law, value: value, lambda law, value: value.real)
-"""as_memory(law, value): a number of a state as the law sees it."""
+"""as_memory(law, value): number of a state in the type that the law takes."""
 
 contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
-"""contact_kind(body): what ``workspace`` is told of the contact."""
+"""contact_kind(body): argument ``contact`` of ``workspace``."""
 
 
 @inlined
 def workspace(law: Any, zero: Any, contact: Any) -> Work:
-    """Room on the caller's stack, at zero: it lives as long as the caller; contact: that of the body.
+    """Return zeroed arrays on the caller's stack, which live as long as the caller.
 
-    There is room for eight springs that relax.
+    contact: ``contact_kind`` of the body. There is room for eight springs that relax.
     """
     return Work(
         start=room(law, 1, 11, zero),
@@ -118,7 +123,7 @@ def workspace(law: Any, zero: Any, contact: Any) -> Work:
 # --- the velocity that a state holds --------------------------------------------------------------------------------
 
 slip_held = by_scalars(lambda flow, now, u: deviation_slip(flow, now, u), lambda flow, now, w: w)
-"""slip_held(flow, now, u): slip, from the velocity that a state holds."""
+"""slip_held(flow, now, u): slip, from the velocity in a state."""
 
 
 def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
@@ -127,30 +132,30 @@ def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
 
 
 deviation_held = by_scalars(lambda flow, now, u: u, _deviation_of_slip)
-"""deviation_held(flow, now, u): the velocity of the deviation, from the one that a state holds."""
+"""deviation_held(flow, now, u): velocity of the deviation, from the velocity in a state."""
 
 held_velocity = by_scalars(lambda flow, now, u: u, lambda flow, now, u: deviation_slip(flow, now, u))
-"""held_velocity(flow, now, u): the velocity that a state holds, from that of the deviation."""
+"""held_velocity(flow, now, u): velocity in a state, from that of the deviation."""
 
 velocity_held = by_scalars(
     lambda flow, now, u: u + reference_velocity(flow.body, now.sine, now.cosine),
     lambda flow, now, w: w + belt_velocity(flow.body, flow.belt_speed, now),
 )
-"""velocity_held(flow, now, u): the velocity of the mass, from the one that a state holds."""
+"""velocity_held(flow, now, u): velocity of the mass, from the velocity in a state."""
 
 rate_held = by_scalars(lambda flow, now, a: a, lambda flow, now, a: deviation_slip_rate(flow, now, a))
-"""rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
+"""rate_held(flow, now, a): rate of the velocity in a state, from the deviation's acceleration."""
 
 
 @fast
 def rows_of(flow: Flow) -> int:
-    """How many numbers a state is."""
+    """Return the number of numbers in a state."""
     return MEMORY + count_of(flow.law) + elements_of(flow.body)
 
 
 @fast
 def springs_at(flow: Flow, work: Work) -> Any:
-    """The linear springs and dashpots that the body has beside ``work.start``."""
+    """Return the linear springs and dashpots of the body beside ``work.start``."""
     now = instant_near(flow, flow.anchor)
     return slopes_at(flow.body, work.start[Y], deviation_held(flow, now, work.start[U]))
 
@@ -163,7 +168,8 @@ def _never(law: Any) -> bool:
 
 
 remembers_stick = by_law(_never, _never, lambda law: law.remembers_stick(), _never)
-"""remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a memory."""
+"""remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a
+memory."""
 
 
 # --- a contact that keeps its stiffness ---------------------------------------------------------------------------
@@ -183,16 +189,17 @@ note_share = by_contact(
     lambda work, body, now: None,
     _share_at,
 )
-"""note_share(work, body, now): keep the normal load of this instant where the contact hangs on it."""
+"""note_share(work, body, now): keep the normal load of this instant, if the contact depends on it."""
 
 _of_contact = by_contact(lambda work, rate: rate, lambda work, rate: rate / work.share[0])
-"""_of_contact(work, rate): z'/n from the rate that a law tells."""
+"""_of_contact(work, rate): z'/n, from the rate of the law."""
 
 stretching = by_contact(lambda work, z: 0.0 * z, lambda work, z: (work.share[1] / work.share[0]) * z)
-"""stretching(work, z): by how much z'/n of a deflection that stays at z/n exceeds zero."""
+"""stretching(work, z): z'/n of a deflection whose z/n is constant."""
 
 slip_to_yield = by_contact(lambda work, k, w: w, lambda work, k, w: w - work.share[1] * work.memory[k])
-"""slip_to_yield(work, k, w): the slip against the yield surface of a deflection, which a growing load takes away."""
+"""slip_to_yield(work, k, w): slip against the yield surface of a deflection, which moves with a growing
+load."""
 
 
 def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
@@ -201,7 +208,7 @@ def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
 
 
 slip_rate_to_yield = by_contact(lambda work, k, a: a, _slip_rate_of_yield)
-"""slip_rate_to_yield(work, k, a): its rate."""
+"""slip_rate_to_yield(work, k, a): rate of that slip."""
 
 
 # --- rates --------------------------------------------------------------------------------------------------------
@@ -211,7 +218,7 @@ on_circle = by_dimension(
     # not a rounding error inside it, where the law would let it follow the slip
     lambda radius, z: (radius * (1.0 + 1e-15) / math.sqrt(z.real * z.real + z.imag * z.imag)) * z,
 )
-"""on_circle(radius, z): a deflection put on its yield surface."""
+"""on_circle(radius, z): deflection put on its yield surface."""
 
 _yielding = by_dimension(
     # what yields on a line stays where it is: no rounding of the law's own rate
@@ -236,12 +243,15 @@ rate_in_mode = by_scalars(
     lambda law, work, k, w: _deflection_rate(law, work, k, w),
     lambda law, work, k, w: law.rate(w, work.memory, k),
 )
-"""rate_in_mode(law, work, k, w): of one of ``work.memory``; what yields is put on its yield surface first."""
+"""rate_in_mode(law, work, k, w): rate of the k-th number of ``work.memory``; a yielding one is put on its
+yield surface first."""
 
 
 @fast
 def friction_in_mode(law: Any, work: Work, w: Any) -> Any:
-    """The friction coefficient of ``work.memory``; leaves the rates of that in ``work.moving``."""
+    """Return the friction coefficient of ``work.memory``, and leave the rates of the memory in
+    ``work.moving``.
+    """
     for k in range(count_of(law)):
         work.moving[k] = rate_in_mode(law, work, k, w)
     return friction_of(law, work.memory, work.moving, w)
@@ -249,13 +259,13 @@ def friction_in_mode(law: Any, work: Work, w: Any) -> Any:
 
 @fast
 def load_on(body: BodyNumbers, now: Instant) -> float:
-    """The normal load by which friction moves the mass: none where its motion is prescribed."""
+    """Return the normal load by which friction moves the mass: none if its motion is prescribed."""
     return 0.0 if body.prescribed else normal_load(body, now)
 
 
 @fast
 def fill_rates(flow: Flow, now: Instant, work: Work, zero: Any) -> Any:
-    """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
+    """Fill ``work.rates`` at ``work.stage``, and return slip and its rate."""
     body, n = flow.body, count_of(flow.law)
     note_share(work, body, now)
     for k in range(n):

@@ -1,4 +1,4 @@
-"""One scene of a law for kernels, and the steps of one motion, kept for motions close by.
+"""Scene of a law for kernels, and the steps of one motion, kept for motions close by.
 
 A map, its fixed point and its derivative belong to a case. Two maps whose steps are each chosen by their own
 error differ by as much as either is wrong, wherever one step more or less is repeated. Over the same steps
@@ -19,7 +19,7 @@ from frictionlab.scene.body import BodyNumbers
 
 
 class Case(NamedTuple):
-    """Law and body on a belt; ``zero`` is a zero of the kind of its positions, float or complex."""
+    """Law and body on a belt; zero: of the type of its positions, float or complex."""
 
     law: Any
     body: BodyNumbers

@@ -223,9 +223,7 @@ def _flatter(ahead: Any, here: Any, behind: Any, h: float) -> Any:
 
 @inner
 def _flatly(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
-    """Write A and F of a deflection by its own rate, which may have a corner that the law does not
-    declare.
-    """
+    """Write A and F of a deflection that moves by its own rate, which may have an undeclared corner."""
     nudge = FINE * work.size[k]
     friction = friction_of(flow.law, work.memory, work.moving, w)
     for column in range(dimension(zero)):
@@ -250,9 +248,7 @@ def _deflection(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
 
 @inner
 def _scalar(flow: Flow, w: Any, k: int, work: Work, zero: Any) -> None:
-    """Write A and F of a number without direction, shifted by a share of its value: it may range over
-    decades.
-    """
+    """Write A and F of a scalar, shifted by a share of its value: it may range over decades."""
     least = 0.0 if work.positive[k] > 0.0 else LOST * work.size[k]
     shift = max(NUDGE * abs(work.memory[k]), least)
     friction = friction_of(flow.law, work.memory, work.moving, w)
@@ -313,9 +309,7 @@ _slope = by_scalars(_slope_of_deviation, _slope_of_slip)
 
 @inner
 def _by_share(work: Work, flow: Flow, now: Instant, w: Any, zero: Any) -> None:
-    """Add the effect of a changing load on a contact of constant stiffness: its share divides every
-    deflection.
-    """
+    """Add the effect of a changing load on a contact of constant stiffness, where it divides deflections."""
     law, body, n = flow.law, flow.body, count_of(flow.law)
     share, rate, bend = work.share[0], work.share[1], work.share[2]
     # With n = N/N_mean the state holds zeta = z/n, and zeta' = z'/n - (n'/n) zeta: -n'/n more in its own block, and

@@ -1,9 +1,9 @@
-"""The period map of laws with memory, of one bristle or any: mass and memory together by Rodas5P.
+"""Period map of laws with memory, of one bristle or several numbers: mass and memory together by Rodas5P.
 
-However stiff the contact, steps follow the motion. A step ends where a deflection meets or leaves its yield surface
-or begins to be unloaded and, on the line, where slip reverses; between such events everything is smooth. Scalars have
-no events: steps are as short as friction near rest is steep. Where the slip is prescribed, friction moves nothing and
-only the memory is followed.
+However stiff the contact, steps follow the motion. A step ends where a deflection meets or leaves its yield
+surface or begins to be unloaded and, on the line, where slip reverses; between such events everything is
+smooth. Scalars have no events: steps are as short as friction near rest is steep. If the slip is prescribed,
+friction does not move the mass, and only the memory is followed.
 """
 
 from __future__ import annotations
@@ -62,7 +62,8 @@ from frictionlab.motion.steppers.step import growth_factor, longest_step
 from frictionlab.scene.body import BodyNumbers
 
 COARSEST = 1e-4
-"""Of a step, per unit of friction impulse in a radian: what is coarser jumps over reversals."""
+"""Coarsest accuracy of a step, per unit of friction impulse in a radian; coarser steps jump over
+reversals."""
 
 
 def _at_rest(law: Any, body: BodyNumbers) -> float:
@@ -70,27 +71,26 @@ def _at_rest(law: Any, body: BodyNumbers) -> float:
 
 
 usual_friction = by_law(_at_rest, _at_rest, lambda law, body: law.sliding_friction(swing_of(body)))
-"""usual_friction(law, body): the coefficient of steady sliding that accuracies are measured by."""
+"""usual_friction(law, body): coefficient of steady sliding, by which accuracies are measured."""
 
 
 @inner
 def coarsest(law: Any, body: BodyNumbers) -> float:
-    """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
+    """Return the coarsest accuracy of a map: two maps of coarser accuracies would be one and the same."""
     return COARSEST * body.normal_load * usual_friction(law, body) / quickest_of(body)
 
 
 OF_EVENTS = 1e-9
-"""Accuracy by which events are found where steps are to be repeated, for what is left is divided by a small shift.
+"""Accuracy of events in steps that are to be repeated, since their error is divided by a small shift.
 
-Not so fine that rounding decides on which side of an event a step ends.
-"""
+It is not so fine that rounding decides on which side of an event a step ends."""
 LAYER = 40.0
-"""Bristle lengths slid since a reversal after which its layer is over."""
+"""Length of the layer behind a reversal, in bristle lengths slid."""
 
 
 @inner
 def _while_into(part: float, flow: Flow, h: float, work: Work, zero: Any) -> Any:
-    """A while into the last step, of h."""
+    """Return position, velocity and friction a time ``part`` into the last step, of length h."""
     body, now = flow.body, instant_near(flow, flow.anchor + part)
     within_step(flow, part / h, work)
     y, u = work.stage[Y], work.stage[U]
@@ -121,11 +121,12 @@ _dip = by_scalars(
     lambda law, node, w, a, h, zero: _guarded(node, w, a, h, zero),
     lambda law, node, w, a, h, zero: _unguarded(node, w, a, h, zero),
 )
-"""Whether slip comes much closer to rest within a step from a node than at its ends."""
+"""_dip(law, node, w, a, h, zero): whether slip comes much closer to rest within a step from a node than at
+its ends."""
 
 
 def _position_on_the_line(flow: Flow, y: float) -> float:
-    """Of the mass against the belt, at the anchor; of use for differences within a piece."""
+    """Return the position of the mass against the belt at the anchor, for differences within a piece."""
     body = flow.body
     swung = body.reference_sine * flow.sine + body.reference_cosine * flow.cosine
     return y + swung - belt_path(body, flow.belt_speed, 0.0, flow.anchor)
@@ -139,9 +140,11 @@ _position = by_dimension(
 
 
 def _layer_on_the_line(work: Work, covered: float, share: float, a: float, w: float) -> float:
-    """The longest step that adds no more than this share to the way since a reversal, or to the bristle's length.
+    """Return the longest step that adds at most this share to the path since a reversal.
 
-    Behind a reversal a bristle bends over in a short layer, which an L-stable step might pass unseen.
+    Where the path is shorter than the bristle, the share is one of the bristle's length.
+
+    A bristle bends over in a short layer behind a reversal. An L-stable step might pass that layer unseen.
     """
     size = work.size[0]
     if work.mode[0] != SMOOTH or covered >= LAYER * size:
@@ -155,7 +158,7 @@ _layer = by_dimension(_layer_on_the_line, lambda work, covered, share, a, w: OPE
 
 @inner
 def _at_start(flow: Flow, work: Work, zero: Any) -> Any:
-    """Slip and its rate where the step starts."""
+    """Return slip and its rate at the start of the step."""
     for row in range(rows_of(flow)):
         work.end[row] = work.start[row]
     return rates_at_end(flow, flow.anchor, work, zero)
@@ -163,7 +166,7 @@ def _at_start(flow: Flow, work: Work, zero: Any) -> Any:
 
 @inner
 def _flow_of(case: Case, tau: float, work: Work) -> Flow:
-    """The flow at this time with the modes and the side that the state in ``work.start`` has."""
+    """Return the flow at this time, with the modes and the side of slip of the state in ``work.start``."""
     flow = anchored(case.law, case.body, case.belt_speed, 1.0, tau)
     # the side of slip is needed for the rates, and they for the side of a slip that is zero
     w, a = _at_start(flow, work, case.zero)
@@ -172,7 +175,10 @@ def _flow_of(case: Case, tau: float, work: Work) -> Flow:
 
 
 class MemoryNode(NamedTuple):
-    """Where a step starts: slip and its rate, and whether an event has just been passed."""
+    """Start of a step: its time, slip and its rate.
+
+    leaving: whether an event has just been passed.
+    """
 
     tau: float
     w: Any
@@ -181,7 +187,7 @@ class MemoryNode(NamedTuple):
 
 
 class MemoryStep(NamedTuple):
-    """The step to take, whether it has to be tried first, and whether it ends at an event."""
+    """Verdict on a step: its length, whether it must be tried again, and whether it ends at an event."""
 
     h: float
     repeats: bool
@@ -192,7 +198,7 @@ class MemoryStep(NamedTuple):
 def _end_of_step(
     flow: Flow, node: MemoryNode, h: float, accuracy: float, work: Work, zero: Any
 ) -> MemoryStep:
-    """What becomes of a step of h that is accurate enough."""
+    """Decide whether an accurate step of h ends at an event, must be repeated shorter, or stands."""
     w, a = rates_at_end(flow, node.tau + h, work, zero)
     # the step ends at the first event in it, wherever in the step that is
     guard = lowest(flow, w, a, work)
@@ -213,7 +219,7 @@ def _end_of_step(
 
 @inner
 def _depart(flow: Flow, leaving: bool, work: Work, zero: Any) -> MemoryNode:
-    """Get ready for steps from ``work.start``, at the anchor of the flow."""
+    """Prepare steps from ``work.start``, at the anchor of the flow."""
     # guards at the start, to be compared with those at the end, and the blocks of all stages
     w, a = _at_start(flow, work, zero)
     note_guards(flow, w, a, work)
@@ -224,7 +230,7 @@ def _depart(flow: Flow, leaving: bool, work: Work, zero: Any) -> MemoryNode:
 
 @inner
 def _arrive(flow: Flow, tau: float, ends: bool, work: Work, zero: Any) -> float:
-    """Let the end of a step be the start of the next; returns the side of slip there."""
+    """Make the end of a step the start of the next; return the side of slip there."""
     side = flow.side
     if ends:
         w, a = rates_at_end(flow, tau, work, zero)
@@ -240,10 +246,10 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, zero: Any) -> float:
 
 @inner
 def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) -> Any:
-    """The motion from ``work.start``, and back into it, until ``end``, all between two corners of what changes in
-    time; returns the smallest slip speed and the steps.
+    """Follow the motion from ``work.start`` until ``end``; return the smallest slip speed and the steps.
 
-    Steps are -1 where it gave up.
+    The end is left in ``work.start``. Both times lie between two corners of the functions of time. Steps are
+    -1 if the search gave up.
     """
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
     accuracy, track, pace = stepping.accuracy, stepping.track, stepping.pace
@@ -290,11 +296,11 @@ def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) ->
 
 @inner
 def repeat(flow: Flow, end: float, first: int, stepping: Stepping, work: Work, zero: Any) -> int:
-    """The motion from ``work.start``, and back into it, until ``end`` by the steps of another motion close by.
+    """Follow the motion from ``work.start`` until ``end`` by the steps of another motion close by.
 
-    first: the number of the first of them. Steps end at the events of their own motion: the numbers at the end are
-    then a smooth function of those at the start. Returns the number of the step after the last; -1 where the events
-    are not those of the other motion.
+    first: number of the first of these steps. Steps end at the events of their own motion, so that the
+    numbers at the end are a smooth function of those at the start. The end is left in ``work.start``. Return
+    the number of the step after the last; -1 if the events are not those of the other motion.
     """
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
     pace, within = stepping.pace, min(stepping.accuracy, OF_EVENTS)
@@ -321,7 +327,7 @@ def repeat(flow: Flow, end: float, first: int, stepping: Stepping, work: Work, z
 
 @inner
 def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
-    """The deflection stays, and its part of the new load changes; beyond yield it springs back at once."""
+    """Keep each deflection while its share of the new load changes; one beyond yield springs back at once."""
     for k in range(count_of(law)):
         z = (before / after) * work.start[MEMORY + k]
         far = length(z)
@@ -334,22 +340,22 @@ _over_jump = by_contact(
     lambda work, law, before, after: None,
     _per_new_share,
 )
-"""_over_jump(work, law, before, after): carry the memory over a corner at which the normal load, over its mean, goes
-from one value to another."""
+"""_over_jump(work, law, before, after): carry the memory over a corner where the normal load over its mean
+changes from ``before`` to ``after``."""
 
 
 @inner
 def _share_at(case: Case, k: int, tau: float) -> float:
-    """The normal load over its mean, as the k-th piece of the span has it."""
+    """Return the normal load over its mean, of the k-th piece of the span."""
     body = case_in_piece(case, k).body
     return load_share(body, instant_at(body, tau))
 
 
 @inner
 def memory_map(case: Case, y: Any, u: Any, work: Work, stepping: Stepping) -> Mapped:
-    """One span from the deviation (y, u) and the memory at ``work.start``, which becomes that at its end.
+    """Map one span from the deviation (y, u) and the memory at ``work.start``, which becomes that at the end.
 
-    Where it repeats kept steps it gives up where they do not fit.
+    A map that repeats kept steps gives up where they do not fit.
     """
     law, body, zero = case.law, case.body, case.zero
     free = 0.0 if body.prescribed else 1.0  # the reference is the motion

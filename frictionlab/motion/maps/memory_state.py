@@ -1,16 +1,17 @@
-"""What a law remembers as coordinates of a state, and the scales that those are measured by.
+"""Memory of a law as coordinates of a state, the scales of these, and the corners of their rates.
 
-In a state a deflection is measured by the square root of its stiffness, as energy is; a positive scalar by its
-logarithm as long as it is small, for it may range over decades, and by itself where it is large: what decays there
-then nears its orbit period by period. A law whose deflections remember whether they stick has one more coordinate
-for each of them, zero for stick; it comes back exactly or not at all.
+In a state a deflection is multiplied by the square root of its stiffness, as in the norm of energy. A
+positive scalar is replaced by its logarithm as long as it is small, for it may range over decades, and left
+as it is where it is large: a large scalar that decays then nears its orbit period by period. A law whose
+deflections remember whether they stick has one more coordinate for each of them, zero for stick; it comes
+back exactly or not at all.
 
-Where the rate of each deflection has corners: its yield surface, and whether it is unloaded elastically.
-
-As a law declares it, or found from the rates of a law that does not. A plugin may drag a slider without saying where:
-its rate then jumps inside a step, and a step of many stages, some before the jump and some behind it, may end before
-it for ever. Deflections have no preferred direction and one moves by slip and itself alone, so that one ray tells
-all: where along it the deflection stops following the slip, and whether it follows a slip that makes it smaller.
+The rate of a deflection may have corners: at its yield surface, and where it begins to be unloaded
+elastically. Laws declare these corners; else they are found from the rates. A plugin may drag a slider
+without saying where: its rate then jumps inside a step. A step of many stages, some before the jump and some
+behind it, may then end before it for ever. Deflections have no preferred direction, and each moves by slip
+and itself alone. So one ray shows where the deflection stops following the slip, and whether it follows a
+slip that makes it smaller.
 """
 
 from __future__ import annotations
@@ -30,9 +31,11 @@ from frictionlab.motion.maps.rates import FOLLOWS, MEMORY, YIELDS, Work, as_memo
 from frictionlab.scene.body import BodyNumbers
 
 ALIKE = 1e-9
-"""Of slip: a rate that differs by less from it follows it; what is stretched by less is not stretched."""
+"""Tolerance relative to slip: a rate that differs by less follows the slip; a deflection stretched by less is
+not stretched."""
 SHARES = 4
-"""Of the radius found, at which a deflection must follow the slip, loaded and unloaded."""
+"""Number of places below the radius found, at which a deflection must follow the slip, loaded and
+unloaded."""
 
 
 @inner
@@ -43,7 +46,7 @@ def _follows(law: Any, work: Work, k: int, v: Any, z: Any) -> bool:
 
 @inner
 def _first_yield(law: Any, work: Work, k: int, v: Any) -> float:
-    """The deflection along v from which on it does not follow the slip v any more; 0 for none."""
+    """Return the deflection along v from which on it no longer follows the slip v; 0 for none."""
     along = v / length(v)
     usual = work.size[k]  # in steady sliding: mostly where it yields
     if _follows(law, work, k, v, (1.0 - 1e-12) * usual * along) and not _follows(
@@ -65,7 +68,7 @@ def _first_yield(law: Any, work: Work, k: int, v: Any) -> float:
 
 @inner
 def _yields_at(law: Any, work: Work, k: int, v: Any, radius: float) -> bool:
-    """Whether the deflection follows the slip v everywhere below the radius and is not stretched at it."""
+    """Check whether the deflection follows the slip v below the radius and is not stretched at it."""
     speed = length(v)
     along = v / speed
     for part in range(1, SHARES + 1):
@@ -82,7 +85,7 @@ def _yields_at(law: Any, work: Work, k: int, v: Any, radius: float) -> bool:
 
 @inner
 def _found_radius(law: Any, work: Work, k: int, zero: Any) -> float:
-    """The radius that rates tell, the same at slips of any speed; 0 where they tell none."""
+    """Return the radius found from the rates, if it is the same at slips of any speed; else 0."""
     along = 1.0 + 0.0 * zero
     radius = _first_yield(law, work, k, along)
     # a surface that moves with the speed of slip is none
@@ -94,7 +97,7 @@ def _found_radius(law: Any, work: Work, k: int, zero: Any) -> float:
 
 
 def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, zero: complex) -> bool:
-    """Whether rates follow a slip that makes a deflection smaller or turns it, and not one that stretches it."""
+    """Check whether rates follow slips that shrink or turn a deflection, but not one that stretches it."""
     if law.elastic_unloading():
         return True
     stretched = True
@@ -153,8 +156,9 @@ measure_yield = by_law(
     # a scalar has no direction in which to yield
     lambda law, work, zero: None,
 )
-"""measure_yield(law, work, zero): fill the radius of each yield surface, 0 for none, and ``unloads``: 1 for what has
-none and follows the slip wherever that makes it smaller. On the line a reversal of slip serves for that."""
+"""measure_yield(law, work, zero): fill the radius of each yield surface, 0 for none, and ``unloads``. That is
+1 for a deflection without a yield surface that follows every slip which makes it smaller. On the line a
+reversal of slip takes its place."""
 
 
 _by_direction = by_dimension(
@@ -162,14 +166,14 @@ _by_direction = by_dimension(
 )
 
 memory_of = by_scalars(lambda law, zero: _by_direction(law, zero), lambda law, zero: np.zeros(law.count()))
-"""memory_of(law, zero): an array for the memory of a law, at zero."""
+"""memory_of(law, zero): array for the memory of a law, at zero."""
 
 
 # --- scales ---------------------------------------------------------------------------------------------------------
 
 
 def _measure_bristle(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
-    """The stiffness of the contact about the undeflected bristle."""
+    """Fill size and unit of a bristle, by the stiffness of the contact about the undeflected bristle."""
     size = law.largest_deflection()
     size = size if size < 1e300 else 1.0
     work.size[0] = size
@@ -177,13 +181,16 @@ def _measure_bristle(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None
 
 
 LEAST_EFFECT, LEAST_OF_SCALARS = 1e-6, 1e-3
-"""Of friction, that a number of the size it has in steady sliding is taken to change; of a scalar, whose logarithm is
-shifted by as much as any other coordinate."""
+"""Smallest change of friction, as a share of it, that a number of its size in steady sliding is taken to
+cause; second, the same for a scalar, whose logarithm is shifted by as much as any other coordinate."""
 
 
 @inner
 def _effects(law: Any, body: BodyNumbers, work: Work, zero: Any, least: float) -> None:
-    """Sizes in steady sliding as fast as the friction-free motion; into units, the slope of friction by each."""
+    """Fill sizes in steady sliding at the speed of the friction-free motion.
+
+    The slope of friction by each number is left in its unit.
+    """
     v, n = swing_of(body) + 0.0 * zero, count_of(law)
     for k in range(n):
         work.memory[k] = law.steady(v, k)
@@ -225,7 +232,7 @@ _measure_sizes = by_law(_measure_bristle, _measure_bristle, _measure_deflections
 
 @inner
 def measure_scales(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
-    """Fill of each number its size in steady sliding, its unit in the norm of energy and where it yields."""
+    """Fill size in steady sliding, unit in the norm of energy and corners of each number."""
     _measure_sizes(law, body, work, zero)
     measure_yield(law, work, zero)
 
@@ -236,12 +243,12 @@ coordinates = by_scalars(
     lambda law, zero: count_of(law) * (dimension(zero) + (1 if remembers_stick(law) else 0)),
     lambda law, zero: count_of(law),
 )
-"""coordinates(law, zero): how many numbers of a state hold the memory."""
+"""coordinates(law, zero): number of coordinates of the memory in a state."""
 
 
 @inner
 def _unit_of_stick(body: BodyNumbers) -> float:
-    """What a state has stick or slip multiplied by: no quotient shifts a state by half of that."""
+    """Return the coordinate of a slipping deflection; no quotient shifts a state by half of it."""
     return 1.0 + swing_of(body) + body.normal_load
 
 
@@ -267,7 +274,7 @@ pack_memory = by_scalars(_pack_deflections, _pack_scalars)
 
 @inner
 def scalar_coordinate(share: float, positive: float) -> float:
-    """Of a scalar, as a share of its usual size."""
+    """Return the coordinate of a scalar, given as a share of its usual size."""
     if positive == 0.0:
         return share
     return math.log(max(share, 1e-300)) if share < 1.0 else share - 1.0
@@ -275,7 +282,7 @@ def scalar_coordinate(share: float, positive: float) -> float:
 
 @inner
 def scalar_share(coordinate: float, positive: float) -> float:
-    """The other way round."""
+    """Return a scalar as a share of its usual size, from its coordinate."""
     if positive == 0.0:
         return coordinate
     return math.exp(coordinate) if coordinate < 0.0 else 1.0 + coordinate
@@ -328,7 +335,7 @@ def pulled(law: Any, memory: Any, alone: Any) -> None:
 
 
 def _leave(law: Any, work: Work) -> None:
-    """The state of a bristle, or of scalars, is what it is."""
+    """Leave the state of a bristle, or of scalars, as it is."""
 
 
 def _cut_back(law: Any, work: Work) -> None:
@@ -345,7 +352,10 @@ cut_back = by_law(_leave, _leave, _cut_back, _leave)
 
 @inner
 def remember_sliding(law: Any, body: BodyNumbers, work: Work, slip: Any) -> None:
-    """The memory of steady sliding at a slip velocity; at rest no deflection, and scalars as in free motion."""
+    """Write the memory of steady sliding at a slip velocity into ``work.start``.
+
+    At rest there is no deflection, and scalars are those of free motion.
+    """
     v = slip if length(slip) > 0.0 else swing_of(body) + 0.0 * slip
     rests = length(slip) == 0.0 and law.turning > 0.0
     for k in range(count_of(law)):

@@ -1,10 +1,10 @@
 """Modes of deflections and the guards at which they change: a yield surface is met or left, slip reverses.
 
-Most laws read the modes from the state; one that remembers stick carries them on.
+Most laws read the modes from the state; a law that remembers stick carries them on.
 
-A guard is positive as long as a mode holds; it is measured as a velocity or a deflection in the norm of energy, and
-comes with its rate, so that where it passes zero is found by Newton's method. Guards are numbered: one for each
-deflection, and last, on the line, that of the slip itself, where a law's own rate may have a corner.
+A guard is positive as long as a mode holds. It is measured as a velocity or a deflection in the norm of
+energy, and has a rate, so that Newton's method finds its zero. Guards are numbered: one for each deflection
+and, last, on the line, that of the slip itself, where a law's own rate may have a corner.
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ from frictionlab.motion.maps.rates import (
 from frictionlab.motion.maps.step import step
 
 OPEN = 1e300
-"""The guard of what has no corner."""
+"""Value of a guard of a number without a corner."""
 SLACK = 1e-12
-"""Of a yield surface: a smaller excess is rounding."""
+"""Relative excess over a yield surface below which it is rounding."""
 CLOSE = 1e-3
-"""Of the accuracy: how far beyond its zero a guard may be where a step ends at it."""
+"""Largest excess of a guard beyond its zero at the end of a step, as a share of the accuracy."""
 
 along = by_dimension(lambda z, w: z * w, lambda z, w: z.real * w.real + z.imag * w.imag)
-"""along(z, w): the inner product."""
+"""along(z, w): inner product."""
 
 
 class Guard(NamedTuple):
-    """A guard's number, its value and its rate."""
+    """Guard: its number, value and rate."""
 
     number: int
     value: float
@@ -59,7 +59,11 @@ _reversal = by_dimension(
 
 @inner
 def _unloaded(k: int, a: Any, work: Work, w: Any) -> Guard:
-    """Positive until slip begins to unload what gives way, or to load what follows it."""
+    """Return the guard of unloading.
+
+    It is positive until slip begins to unload a deflection that gives way, or to load one that follows the
+    slip.
+    """
     z, share = work.memory[k], work.mode[k] / work.size[k]
     return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
 
@@ -82,7 +86,10 @@ def _no_breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
 
 
 def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
-    """Positive until a loaded deflection that sticks reaches where it begins to slip: it may depend on slip."""
+    """Return the guard of a loaded deflection that sticks.
+
+    It is positive until the deflection reaches its limit, where it begins to slip. The limit may depend on slip.
+    """
     z = work.memory[number]
     far, loading = length(z), along(z, w)
     if loading <= 0.0:
@@ -96,12 +103,13 @@ def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
 
 
 breakaway = by_law(_no_breakaway, _no_breakaway, _breakaway, _no_breakaway)
-"""Guard of a deflection that sticks: zero where it begins to slip, open where none remembers that it sticks."""
+"""breakaway(flow, number, w, a, work): guard of a deflection that sticks, zero where it begins to slip; open
+where no law remembers stick."""
 
 
 @inner
 def _guard_of_deflections(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
-    """One guard at ``work.memory``, which moves at ``work.moving``, slip w at the rate a."""
+    """Return one guard at ``work.memory``, which moves at ``work.moving``; slip w has the rate a."""
     if number == count_of(flow.law):
         return _reversal(flow, a, w)
     if remembers_stick(flow.law) and work.mode[number] == FOLLOWS:
@@ -124,12 +132,13 @@ guard_of = by_scalars(
     # friction by scalars is steepest where slip reverses, however far: no step should end just there
     lambda flow, number, w, a, work: Guard(number, OPEN, 0.0),
 )
-"""guard_of(flow, number, w, a, work): one guard at ``work.memory``, which moves at ``work.moving``, slip w at a."""
+"""guard_of(flow, number, w, a, work): one guard at ``work.memory``, which moves at ``work.moving``; slip w
+has the rate a."""
 
 
 @inner
 def lowest(flow: Flow, w: Any, a: Any, work: Work) -> Guard:
-    """The lowest of all guards at ``work.memory``."""
+    """Return the lowest of all guards at ``work.memory``."""
     found = Guard(0, OPEN, 0.0)
     for number in range(count_of(flow.law) + 1):
         guard = guard_of(flow, number, w, a, work)
@@ -140,7 +149,7 @@ def lowest(flow: Flow, w: Any, a: Any, work: Work) -> Guard:
 
 @inner
 def rates_at_end(flow: Flow, tau: float, work: Work, zero: Any) -> Any:
-    """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
+    """Return slip and its rate at ``work.end``, the time tau; leave the memory there in ``work.memory``."""
     for row in range(rows_of(flow)):
         work.stage[row] = work.end[row]
     return fill_rates(flow, instant_near(flow, tau), work, zero)
@@ -165,7 +174,7 @@ def _begin_by_state(flow: Flow, a: Any, w: Any, work: Work) -> None:
 
 @inner
 def _begin_by_memory(flow: Flow, a: Any, w: Any, work: Work) -> None:
-    """The modes are a part of the state; but what is unloaded has stopped slipping, what is beyond reach begun."""
+    """Keep the modes of the state, but let unloaded deflections stick and those beyond their reach slip."""
     for k in range(count_of(flow.law)):
         z = work.start[MEMORY + k]
         work.memory[k] = z
@@ -184,12 +193,12 @@ def _begin_deflections(flow: Flow, a: Any, w: Any, work: Work) -> None:
 
 
 begin = by_scalars(_begin_deflections, _begin_smoothly)
-"""begin(flow, a, w, work): set the modes at ``work.start``; slip w moves at the rate a."""
+"""begin(flow, a, w, work): set the modes at ``work.start``; slip w has the rate a."""
 
 
 @inner
 def restore(flow: Flow, work: Work) -> None:
-    """Put the yielding deflections of ``work.start`` back on their surfaces, which errors of a step lead off."""
+    """Put the yielding deflections of ``work.start``, moved by errors of a step, back on their surfaces."""
     for k in range(count_of(flow.law)):
         if work.mode[k] == YIELDS and work.radius[k] > 0.0:
             work.start[MEMORY + k] = on_circle(work.radius[k], work.start[MEMORY + k])
@@ -197,9 +206,10 @@ def restore(flow: Flow, work: Work) -> None:
 
 @inner
 def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, zero: Any) -> float:
-    """The step to the first guard that passes zero within a step of ``high``, just beyond it; left in ``work.end``.
+    """Find the step that ends just beyond the first guard that passes zero, within a step of ``high``.
 
-    Newton's method on the lowest guard, kept between a step that no guard ends and one that a guard does.
+    The state there is left in ``work.end``. Newton's method on the lowest guard is kept between a step in
+    which no guard passes zero and one in which a guard does.
     """
     low, h, within = 0.0, high, CLOSE * accuracy
     for turn in range(60):
@@ -233,7 +243,7 @@ _unloads_by_reversal = by_contact(
 
 @inner
 def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
-    """Change every mode whose guard has been passed at ``work.memory``; returns the side of slip."""
+    """Change every mode whose guard has been passed at ``work.memory``, and return the side of slip."""
     n = count_of(flow.law)
     reverses = guard_of(flow, n, w, a, work).value <= 0.0
     for k in range(n):
@@ -248,7 +258,7 @@ def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
 
 @inner
 def note_guards(flow: Flow, w: Any, a: Any, work: Work) -> None:
-    """Keep every guard at ``work.memory`` and its rate, to be compared with those at the end of a step."""
+    """Keep every guard at ``work.memory`` and its rate, for comparison with those at the end of a step."""
     n = count_of(flow.law)
     for number in range(n + 1):
         guard = guard_of(flow, number, w, a, work)
@@ -257,7 +267,7 @@ def note_guards(flow: Flow, w: Any, a: Any, work: Work) -> None:
 
 @fast
 def _lowest_between(h: float, value0: float, rate0: float, value1: float, rate1: float) -> Any:
-    """Where the cubic through two values and rates is lowest between them, and how low."""
+    """Return where the cubic through two values and rates is lowest between them, and how low it is."""
     # its derivative is rate0 + 2 b s + 3 c s^2 with s from 0 to 1, negative at 0 and positive at 1
     c = h * (rate0 + rate1) - 2.0 * (value1 - value0)
     b = 3.0 * (value1 - value0) - h * (2.0 * rate0 + rate1)
@@ -269,9 +279,9 @@ def _lowest_between(h: float, value0: float, rate0: float, value1: float, rate1:
 
 @inner
 def hidden(flow: Flow, h: float, w: Any, a: Any, work: Work) -> float:
-    """A shorter step where a guard may come close to zero within one that none ends, or pass it twice; else h.
+    """Return a shorter step if a guard may come close to zero, or pass it twice, in this step; else h.
 
-    The guards at the start are those noted, at the end those of ``work.memory``.
+    Guards at the start are those noted, at the end those of ``work.memory``.
     """
     for number in range(count_of(flow.law) + 1):
         value0, rate0 = work.guards[2 * number], work.guards[2 * number + 1]

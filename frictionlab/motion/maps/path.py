@@ -130,7 +130,9 @@ def _path_at(leg: Leg, tau: float, y: float) -> float:
 
 @inner
 def share_of_path(law: Any, body: BodyNumbers, accuracy: float) -> float:
-    """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
+    """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by
+    it.
+    """
     impulse = body.normal_load * law.sliding_friction(0.0)
     return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)
 
@@ -197,7 +199,9 @@ REPEAT, ACCEPT, TURN, SATURATE = 0, 1, 2, 3
 
 
 class PathStep(NamedTuple):
-    """Whether a step is repeated with h or accepted, ends where slip turns round or where friction saturates."""
+    """Whether a step is repeated with h or accepted, ends where slip turns round or where friction
+    saturates.
+    """
 
     verdict: int
     h: float
@@ -251,7 +255,9 @@ def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
 
 @inner
 def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
-    """What becomes of an accurate step of h: whether it ends before that, where slip turns or friction saturates."""
+    """What becomes of an accurate step of h: whether it ends before that, where slip turns or friction
+    saturates.
+    """
     leg, tau, corner = node.leg, node.tau, node.corner
     ending = _until_turn(node, taken, h)
     if ending.verdict == REPEAT:
@@ -277,7 +283,9 @@ def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any
 
 @inner
 def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> PathNode:
-    """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one ends."""
+    """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one
+    ends.
+    """
     leg, taken = node.leg, ending.taken
     # A way of rounding size may shrink: the corner at its end, once passed, would be met again for ever.
     path = max(node.path, _path_at(leg, node.tau + ending.h, taken.x))

@@ -48,7 +48,8 @@ from frictionlab.scene.body import BodyNumbers
 MOST_CORRECTIONS_A_MAP = 8_000
 """Of Newton's method in its steps, some hundredth of a second a thousand."""
 FIRST_ACCURACY = 1e-5
-"""Accuracy of the first maps: of slip in a step, relative to what friction does to it in the shortest time."""
+"""Accuracy of the first maps: of slip in a step, relative to what friction does to it in the shortest
+time."""
 SHORTEST_SLIP = 1e-13
 """Of the span: a step of slip that fails though it is so short is left out."""
 MOST_LEFT_OUT = 20
@@ -201,7 +202,9 @@ def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Tra
 
 
 class Approach(NamedTuple):
-    """What a mass would feel at rest here: force and its rate, limit of friction; time to rest if slip goes on so."""
+    """What a mass would feel at rest here: force and its rate, limit of friction; time to rest if slip goes
+    on so.
+    """
 
     held: complex
     rate: complex
@@ -245,7 +248,9 @@ def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, tra
 
 @inner
 def _slip(case: Case, at: Progress, end: float, accuracy: float, room: Workspace, track: Track) -> Progress:
-    """One step of slip, or the end of it; the way as it was, with a shorter step, where that is not accurate."""
+    """One step of slip, or the end of it; the way as it was, with a shorter step, where that is not
+    accurate.
+    """
     place, step = at.place, room.step
     near = _approach(case, place)
     if not at.leaving and _lands(case, place, near, accuracy):

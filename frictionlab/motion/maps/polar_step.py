@@ -34,7 +34,8 @@ DIRECTIONS = 4
 """Of the state: positions and slip, along and across."""
 MOST_TRIES = 10
 CONVERGED = 1e-8
-"""Relative change of a step's unknowns after which the next one, Newton's steps converging fast, is rounding."""
+"""Relative change of a step's unknowns after which the next one, Newton's steps converging fast, is
+rounding."""
 ALL_NODES: Floats = np.concatenate(([0.0], NODES))
 INVERSE: Floats = np.ascontiguousarray(np.linalg.inv(MATRIX))
 LEAVING: Floats = INVERSE.sum(axis=1)
@@ -198,7 +199,9 @@ def _lack(h: float, room: StepRoom) -> None:
 
 @inner
 def _move(room: StepRoom) -> float:
-    """Take Newton's step, or as much of it as leaves slip at the stages and turns it by less than a radian."""
+    """Take Newton's step, or as much of it as leaves slip at the stages and turns it by less than a
+    radian.
+    """
     part = 1.0
     for j in range(STAGES):
         if room.r[j + 1] + part * room.right[j, 0] < 0.1 * room.r[j + 1]:
@@ -238,7 +241,9 @@ def solve_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> bool:
 
 @inner
 def step_error(h: float, accuracy: float, room: StepRoom) -> float:
-    """The highest Legendre coefficients of slip in the step, over what they may be: below one it is accurate."""
+    """The highest Legendre coefficients of slip in the step, over what they may be: below one it is
+    accurate.
+    """
     growth, turn, largest = 0.0, 0.0, 0.0
     for k in range(STAGES + 1):
         growth += HIGHEST[k] * room.r[k]

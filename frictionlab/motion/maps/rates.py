@@ -249,9 +249,7 @@ yield surface first."""
 
 @fast
 def friction_in_mode(law: Any, work: Work, w: Any) -> Any:
-    """Return the friction coefficient of ``work.memory``, and leave the rates of the memory in
-    ``work.moving``.
-    """
+    """Return the friction coefficient of ``work.memory``, and leave its rates in ``work.moving``."""
     for k in range(count_of(law)):
         work.moving[k] = rate_in_mode(law, work, k, w)
     return friction_of(law, work.memory, work.moving, w)

@@ -306,7 +306,9 @@ _note_slip, _note_stick, note_hop = (
 
 @inner
 def note_stick(track: Track, problem: Flow, tau: float, lasts: float, x: Any) -> None:
-    """Note a time at rest from x on in panels of an eighth of the quickest period: the loads vary within it."""
+    """Note a time at rest from x on in panels of an eighth of the quickest period: the loads vary within
+    it.
+    """
     body, belt_speed = problem.body, problem.belt_speed
     panels = 1 + int(4.0 / math.pi * quickest_of(body) * lasts)
     for k in range(panels):
@@ -392,7 +394,9 @@ def sliding_map(case: Case, y: Any, u: Any, forces: Any, accuracy: float, track:
 def _sliding_piece(
     case: Case, tau: float, end: float, image: Mapped, accuracy: float, track: Track
 ) -> Mapped:
-    """From one corner of what changes in time to the next; image: the state at the first, and what was met so far."""
+    """From one corner of what changes in time to the next; image: the state at the first, and what was met so
+    far.
+    """
     law, belt_speed, zero = case.law, case.belt_speed, case.zero
     y, u, friction_impulse, stuck, closest, released, steps, forces = image
     body = carrying(in_one_number(case.body), forces, tau)

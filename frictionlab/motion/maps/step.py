@@ -1,12 +1,12 @@
-"""One step of a mass and what its friction remembers: Rodas5P, by elimination along an arrow.
+"""Step of a mass and the memory of its contact by Rodas5P, with elimination along an arrow matrix.
 
-The rate of a number z_k that a law remembers depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k,
+The rate of a number z_k of the memory depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k,
 B_k = dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a stage
 
     (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
 
 are solved number by number: E_k = (1/(gamma h) - A_k)^-1 and C_k = E_k B_k give k_zk = E_k r_zk + C_k k_u,
-and what is left is one block for k_u. The cost grows with their count, not with its cube.
+and one block for k_u remains. The cost grows with the count of these numbers, not with its cube.
 """
 
 from __future__ import annotations
@@ -43,14 +43,15 @@ from frictionlab.motion.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREME
 from frictionlab.scene.body import BodyNumbers
 
 LITTLE = 1e-2
-"""Of the unit of a scalar: so much of its error counts where friction does not feel it."""
+"""Share of the unit of a scalar by which its error counts where friction does not depend on it."""
 SIMULTANEOUS = 6
-"""From the stage before this one on, all are at the end of the step: its sine and cosine serve them all."""
+"""Index of the first stage that reuses the sine and cosine of the stage before: both are at the end of the
+step."""
 
 
 @fast
 def _alone(body: BodyNumbers, k: int, h: float) -> float:
-    """What the solve of a stage makes of one relaxing force by itself."""
+    """Return the factor from the right-hand side of one relaxing force to its increment in a stage."""
     return 1.0 / (1.0 / (GAMMA * h) + body.relaxing.rate[k])
 
 
@@ -62,14 +63,15 @@ def _yielded_by_springs(body: BodyNumbers, h: float) -> float:
 
 
 _yielded = by_relaxing(lambda body, h: 0.0, _yielded_by_springs)
-"""_yielded(body, h): by how much relaxing forces grow with the velocity along x1, within a stage."""
+"""_yielded(body, h): growth of the relaxing forces with the velocity along x1, within a stage."""
 
 
 @fast
 def factor(flow: Flow, h: float, work: Work, zero: Any) -> None:
     """Fill ``work.factors`` for a step of h from ``work.jacobian``.
 
-    No pivots: a block that is singular to rounding makes an error that is not finite, and the step is repeated.
+    There are no pivots: a block that is singular to rounding gives an infinite or undefined error, and the
+    step is repeated.
     """
     body, n, diagonally, beside = flow.body, count_of(flow.law), 1.0 / (GAMMA * h), springs_at(flow, work)
     # friction by slip: at once, and through every deflection that slip moves within the step
@@ -98,12 +100,12 @@ _stretched = by_dimension(
     lambda body, x: (body.stiffness_mean + body.stiffness_split) * x,
     lambda body, x: body.stiffness_mean * x + body.stiffness_split * x.conjugate(),
 )
-"""The force of the springs."""
+"""_stretched(body, x): force of the springs."""
 
 
 @fast
 def _argument(i: int, flow: Flow, work: Work) -> None:
-    """Where stage i asks for rates: the start and what the stages before it add."""
+    """Write the argument of stage i: the start plus the increments of the stages before it."""
     size = rows_of(flow)
     for row in range(size):
         work.stage[row] = work.start[row]
@@ -115,7 +117,7 @@ def _argument(i: int, flow: Flow, work: Work) -> None:
 
 @fast
 def _right_side(i: int, flow: Flow, h: float, work: Work) -> None:
-    """Add to the rates what the stages before i and the slope in time bring to the right-hand sides."""
+    """Add the contributions of earlier stages and of the slope in time to the right-hand sides of stage i."""
     size, late, per = rows_of(flow), h * SLOPES[i], 1.0 / h
     for row in range(size):
         work.rates[row] = work.rates[row] + late * work.slope[row]
@@ -137,7 +139,8 @@ def _relaxed_springs(flow: Flow, i: int, h: float, work: Work) -> float:
 
 
 _relaxed = by_relaxing(lambda flow, i, h, work: 0.0, _relaxed_springs)
-"""_relaxed(flow, i, h, work): relaxing forces at the velocity kept, their sum; left in the increments of stage i."""
+"""_relaxed(flow, i, h, work): sum of the relaxing forces at unchanged velocity; they are left in the
+increments of stage i."""
 
 
 def _stretched_springs(flow: Flow, i: int, h: float, u: Any, work: Work) -> None:
@@ -148,12 +151,12 @@ def _stretched_springs(flow: Flow, i: int, h: float, u: Any, work: Work) -> None
 
 
 _stretch = by_relaxing(lambda flow, i, h, u, work: None, _stretched_springs)
-"""_stretch(flow, i, h, u, work): add what the change u of velocity makes of them."""
+"""_stretch(flow, i, h, u, work): add the effect of the change u of velocity on the relaxing forces."""
 
 
 @fast
 def _solve(i: int, flow: Flow, h: float, work: Work, zero: Any) -> None:
-    """The increments of stage i from its right-hand sides in ``work.rates``."""
+    """Solve for the increments of stage i, from its right-hand sides in ``work.rates``."""
     n, body = count_of(flow.law), flow.body
     first = rows_of(flow) * i
     # each number with the velocity kept, then the mass, then what its change of velocity adds to each number
@@ -196,7 +199,7 @@ def _elastic_in_the_plane(body: BodyNumbers, x: complex) -> float:
 _elastic = by_dimension(
     lambda body, x: (body.stiffness_mean + body.stiffness_split) * x * x, _elastic_in_the_plane
 )
-"""Twice the energy of the springs."""
+"""_elastic(body, x): twice the energy of the springs."""
 
 
 def _scalars_within(flow: Flow, work: Work) -> bool:
@@ -206,11 +209,12 @@ def _scalars_within(flow: Flow, work: Work) -> bool:
 
 
 _within = by_scalars(lambda flow, work: True, _scalars_within)
-"""_within(flow, work): whether the law has a rate at ``work.stage``; the age of a contact is never negative."""
+"""_within(flow, work): whether the law has a rate at ``work.stage``; the age of a contact is never
+negative."""
 
 
 def _unit_of_impulse(flow: Flow, k: int, work: Work, zero: Any) -> float:
-    """What a scalar changes in friction, for a radian; or as a state is measured by it, about its own size."""
+    """Return the unit of a scalar: its effect on friction for a radian, or a share of its usual unit."""
     effect = length(apply(block(work.jacobian, 3 * k + 2, zero), 1.0 + 0.0 * zero))
     here = length(work.start[MEMORY + k])
     return max(
@@ -219,12 +223,12 @@ def _unit_of_impulse(flow: Flow, k: int, work: Work, zero: Any) -> float:
 
 
 _unit = by_scalars(lambda flow, k, work, zero: work.unit[k], _unit_of_impulse)
-"""_unit(flow, k, work, zero): what the error of a number is multiplied by."""
+"""_unit(flow, k, work, zero): factor of the error of a number."""
 
 
 @inner
 def _error(flow: Flow, work: Work, zero: Any) -> float:
-    """The difference to the embedded method of order 4 in the norm of energy, the impulse's too."""
+    """Return the difference to the embedded method of order 4 in the norm of energy, impulse included."""
     n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
     last = rows_of(flow) * (STAGES - 1)
     error = _elastic(body, work.increments[last + Y])
@@ -240,9 +244,10 @@ def _error(flow: Flow, work: Work, zero: Any) -> float:
 
 @inner
 def step(flow: Flow, tau: float, h: float, work: Work, zero: Any) -> float:
-    """One step from ``work.start`` to ``work.end``; returns its error in the norm of energy, the impulse's too.
+    """Take one step from ``work.start`` to ``work.end``, and return its error.
 
-    It starts at the anchor of the flow. The error is infinite where a scalar has left its set on the way.
+    It starts at the anchor of the flow. The error is that in the norm of energy, impulse included. It is infinite if a scalar has left its set of values on the
+    way.
     """
     size = rows_of(flow)
     factor(flow, h, work, zero)
@@ -274,7 +279,7 @@ def step(flow: Flow, tau: float, h: float, work: Work, zero: Any) -> float:
 
 @inner
 def bend(flow: Flow, work: Work) -> None:
-    """Leave in ``work.bends`` how the last step runs between its ends, as ``within_step`` reads it."""
+    """Write the interpolant of the last step to ``work.bends``, for ``within_step``."""
     size = rows_of(flow)
     for i in range(3):
         for row in range(size):
@@ -286,7 +291,7 @@ def bend(flow: Flow, work: Work) -> None:
 
 @inner
 def within_step(flow: Flow, share: float, work: Work) -> None:
-    """Leave in ``work.stage`` the state a share into the last step, whose bends are known."""
+    """Write the state at a share of the last step to ``work.stage``; ``bend`` must have been called."""
     size, rest = rows_of(flow), 1.0 - share
     for row in range(size):
         bent = work.bends[row] + share * (work.bends[size + row] + share * work.bends[2 * size + row])

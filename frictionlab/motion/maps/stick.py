@@ -36,7 +36,9 @@ from frictionlab.scene.body import BodyNumbers
 
 @inner
 def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: Any, end: float) -> float:
-    """First time the held force reaches the limit, or end: what is left stays above a parabola that bounds it."""
+    """First time the held force reaches the limit, or end: what is left stays above a parabola that bounds
+    it.
+    """
     holds = law.static_friction()
     swell, longest, start = holds * normal_load_curvature(body), look_ahead(body), tau
     for _ in range(10_000):
@@ -63,7 +65,9 @@ def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: An
 
 @inner
 def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> float:
-    """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
+    """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without
+    slip.
+    """
     if look_ahead(body) < 1e300:  # the force of such springs grows as nobody looks at here
         return 1.0
     x, travel, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
@@ -86,7 +90,9 @@ def _velocity_at(body: BodyNumbers, belt_speed: float, tau: float) -> Any:
 
 @inner
 def _room_at_rest(law: Any, body: BodyNumbers, belt_speed: float, x: Any, start: float, end: float) -> float:
-    """By how much static friction exceeds, all the time between two corners, what holds a mass at x at the first."""
+    """By how much static friction exceeds, all the time between two corners, what holds a mass at x at the
+    first.
+    """
     holds, period, room, samples = (
         law.static_friction(),
         end - start,
@@ -178,7 +184,9 @@ class StickPhase(NamedTuple):
 
 @inner
 def end_of_rest(case: Case, tau: float, x: Any, end: float) -> float:
-    """When slip begins of a mass at rest at tau, x: tau itself where friction cannot hold it; end at the latest."""
+    """When slip begins of a mass at rest at tau, x: tau itself where friction cannot hold it; end at the
+    latest.
+    """
     law, body, belt_speed = case.law, case.body, case.belt_speed
     now, holds = instant_at(body, tau), law.static_friction()
     limit, rise = normal_load(body, now) * holds, normal_load_rate(body, now) * holds

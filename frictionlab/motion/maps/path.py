@@ -1,9 +1,9 @@
-"""The period map of a bristle law whose deflection is known along a straight slip path, in one direction.
+"""Period map of a bristle law whose deflection is known along a straight slip path, in one direction.
 
-Between two reversals of slip the deflection is a function of the way slid since the last one: it is put in where
-friction is evaluated, and what is left to integrate is the mass, by DOP853, without the stiffness of the bristles.
-A leg ends where slip does, or where friction saturates for good. The layer after a reversal is stepped through by
-doubling the way, so that no tolerance can jump over it.
+Between two reversals of slip the deflection is a function of the path slid since the last reversal. Friction
+is evaluated with that function, so that only the mass is integrated, by DOP853, without the stiffness of the
+bristles. A leg ends where slip does, or where friction saturates for good. Through the layer after a
+reversal, steps at most double the path, so that no tolerance can jump over it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from frictionlab.scene.body import BodyNumbers
 
 
 class LegStart(NamedTuple):
-    """What a leg began with: deflection, position of the deviation and of the reference, and time."""
+    """Start of a leg: deflection, position of the deviation and of the reference, and time."""
 
     z: float
     y: float
@@ -53,7 +53,7 @@ class LegStart(NamedTuple):
 
 
 class Leg(NamedTuple):
-    """Slip in one direction: what it began with, and sine and cosine at the anchor time."""
+    """Slip in one direction: its start, and sine and cosine at the anchor time."""
 
     law: Any
     body: BodyNumbers
@@ -66,7 +66,7 @@ class Leg(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """A state with its deflection after the span of the body, and what was met on the way."""
+    """State with its deflection after the span of the body, with sums and extremes on the way."""
 
     y: Any
     u: Any
@@ -92,7 +92,7 @@ def _leg(case: Case, side: float, tau: float, y: float, z: float) -> Leg:
 
 @fast
 def _path_of(leg: Leg, now: Instant, y: float) -> float:
-    """How far the leg has slid, in its direction."""
+    """Return the path that the leg has slid, in its direction."""
     body = leg.body
     swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.start.reference
     carried = belt_path(body, leg.belt_speed, leg.start.tau, now.tau)
@@ -101,7 +101,7 @@ def _path_of(leg: Leg, now: Instant, y: float) -> float:
 
 @fast_embedded
 def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
-    """Acceleration of the deviation, and friction in shares of the mean normal load."""
+    """Return the acceleration of the deviation, and friction in shares of the mean normal load."""
     side, law, now = leg.side, leg.law, instant_near(leg, tau)
     # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
     w = side * max(side * deviation_slip(leg, now, u), 0.0)
@@ -130,8 +130,9 @@ def _path_at(leg: Leg, tau: float, y: float) -> float:
 
 @inner
 def share_of_path(law: Any, body: BodyNumbers, accuracy: float) -> float:
-    """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by
-    it.
+    """Return the share of the path since a reversal by which a step may lengthen it.
+
+    It is less for finer maps: with one share for all, two maps could agree because of it.
     """
     impulse = body.normal_load * law.sliding_friction(0.0)
     return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)
@@ -139,7 +140,7 @@ def share_of_path(law: Any, body: BodyNumbers, accuracy: float) -> float:
 
 @inner
 def _longest(leg: Leg, path: float, share: float, w: float, rate: float) -> float:
-    """The longest step that adds no more than this share of the way, or of the bristle's own length."""
+    """Return the longest step that adds at most this share of the path, or of the bristle's own length."""
     law = leg.law
     length = law.largest_deflection()
     here, next_ = (
@@ -154,7 +155,7 @@ def _longest(leg: Leg, path: float, share: float, w: float, rate: float) -> floa
 
 @inner
 def _until_path(leg: Leg, tau: float, state: State, high: float, path: float) -> Any:
-    """The step at whose end the leg has slid this way (safeguarded Newton)."""
+    """Return the step at whose end the leg has slid this path, and that end (safeguarded Newton)."""
     low, h = 0.0, high
     taken = step(leg, tau, state, h)
     for _ in range(60):
@@ -174,7 +175,7 @@ def _until_path(leg: Leg, tau: float, state: State, high: float, path: float) ->
 
 @inner
 def _slipping(part: float, leg: Leg, tau: float, taken: Dense) -> Any:
-    """A while into a step."""
+    """Return position, velocity and friction at the time ``part`` after the start of a step."""
     body, (y, u), now = leg.body, motion_within(taken, part), instant_near(leg, tau + part)
     _a, rub = path_rates(leg, tau + part, y, u)
     x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
@@ -186,7 +187,7 @@ _note_slip = panel_writer(_slipping)
 
 @inner
 def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
-    """The direction in which slip goes on from here."""
+    """Return the direction in which slip goes on from here."""
     leg = _leg(case, 1.0, tau, y, z)
     w = slip_at(leg, tau, u)
     if w == 0.0:
@@ -199,9 +200,7 @@ REPEAT, ACCEPT, TURN, SATURATE = 0, 1, 2, 3
 
 
 class PathStep(NamedTuple):
-    """Whether a step is repeated with h or accepted, ends where slip turns round or where friction
-    saturates.
-    """
+    """Verdict on a step: repeat it with h, accept it, or end it where slip turns or friction saturates."""
 
     verdict: int
     h: float
@@ -209,7 +208,7 @@ class PathStep(NamedTuple):
 
 
 class PathNode(NamedTuple):
-    """Where a step starts: its leg, anchored there, the way slid on it and the way after which friction saturates.
+    """Start of a step: its leg, anchored there, the path slid on it, and the path until saturation.
 
     leaving: whether slip has just turned round.
     """
@@ -224,7 +223,7 @@ class PathNode(NamedTuple):
 
 @inner
 def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
-    """The start of a leg."""
+    """Return the node at the start of a leg."""
     a, rub = path_rates(leg, tau, y, u)
     return PathNode(
         leg, tau, State(y, u, a, rub, 0.0, 0.0), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True
@@ -233,7 +232,7 @@ def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
 
 @inner
 def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
-    """What becomes of an accurate step of h: whether slip turned round in it, between its ends included."""
+    """Decide on an accurate step of h: whether slip turned round in it, between its ends included."""
     leg, tau, state = node.leg, node.tau, node.state
     after, limit = leg.side * slip_at(leg, tau + h, taken.v), h
     if after <= 0.0 and node.leaving:
@@ -255,9 +254,7 @@ def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
 
 @inner
 def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
-    """What becomes of an accurate step of h: whether it ends before that, where slip turns or friction
-    saturates.
-    """
+    """Decide on an accurate step of h: whether it ends earlier, where slip turns or friction saturates."""
     leg, tau, corner = node.leg, node.tau, node.corner
     ending = _until_turn(node, taken, h)
     if ending.verdict == REPEAT:
@@ -272,7 +269,7 @@ def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
 
 @inner
 def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any:
-    """One step of h from a node: what becomes of it, and how much longer the next one may be."""
+    """Try one step of h from a node, and return its verdict and the growth of the next step."""
     leg = node.leg
     taken = step(leg, node.tau, node.state, h)
     growth = wary_growth_of(leg.body, taken, accuracy) if in_a_layer else growth_of(leg.body, taken, accuracy)
@@ -283,8 +280,9 @@ def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any
 
 @inner
 def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> PathNode:
-    """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one
-    ends.
+    """Return the node after an accepted step: on the same leg, or on the next one.
+
+    The next leg begins with the deflection at the end of this one.
     """
     leg, taken = node.leg, ending.taken
     # A way of rounding size may shrink: the corner at its end, once passed, would be met again for ever.
@@ -311,7 +309,7 @@ def _deflection_at(node: PathNode) -> float:
 
 @inner
 def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pace) -> Carried:
-    """Between two corners of what changes in time; image: the state at the first, and the steps so far."""
+    """Map one piece by kept steps; image: state at its first corner, and the steps so far."""
     y, u, z, friction_impulse, last = image.y, image.u, image.z, image.friction_impulse, pace.taken[0] - 1
     node = _first_node(case, tau, y, u, z)
     for k in range(image.steps, last + 1):
@@ -330,10 +328,10 @@ def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pa
 
 @inner
 def path_map(case: Case, y: float, u: float, z: float, stepping: Stepping) -> Carried:
-    """One span from the deviation (y, u) and deflection z at tau = 0.
+    """Map one span from the deviation (y, u) and deflection z at tau = 0.
 
-    By the steps of another motion close by it gives up where the events are not those of that one. Steps end at the
-    events of their own motion: the end is then a smooth function of the start.
+    A map by the steps of another motion close by gives up where the events are not those of that motion.
+    Steps end at the events of their own motion, so that the end is a smooth function of the start.
     """
     image = Carried(y, u, z, 0.0, 1e300, 0)
     for k in range(pieces_of(case.body)):
@@ -349,7 +347,10 @@ def path_map(case: Case, y: float, u: float, z: float, stepping: Stepping) -> Ca
 
 @inner
 def _path_piece(case: Case, tau: float, end: float, image: Carried, stepping: Stepping) -> Carried:
-    """Between two corners of what changes in time; image: the state at the first, and what was met so far."""
+    """Map one piece of the span.
+
+    image: state at its first corner, with sums and extremes so far.
+    """
     law, body, accuracy = case.law, case.body, stepping.accuracy
     longest = longest_step(body, law.sliding_friction(0.0), accuracy)
     share = share_of_path(law, body, accuracy)

@@ -1,8 +1,9 @@
-"""The period map of a sliding law in the plane by implicit steps in polar slip, with its exact derivative.
+"""Period map of a sliding law in the plane by implicit steps in polar slip, with its exact derivative.
 
-It takes some ten steps where slip sets off from rest, and explicit ones must follow friction that turns slip towards
-the force at the rate f/r: up to millions of them. The derivative is that of the steps themselves: slip starts and
-ends at rest with the velocity of the belt, so that no event adds to it, and in rest the columns of slip vanish.
+The map takes some ten steps where slip starts from rest. Explicit steps must follow friction that turns slip
+towards the force at the rate f/r: up to millions of them. The derivative is that of the steps themselves.
+Slip starts and ends at rest with the velocity of the belt, so that no event adds to the derivative; at rest
+the columns of slip vanish.
 """
 
 from __future__ import annotations
@@ -46,15 +47,16 @@ from frictionlab.motion.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import BodyNumbers
 
 MOST_CORRECTIONS_A_MAP = 8_000
-"""Of Newton's method in its steps, some hundredth of a second a thousand."""
+"""Largest number of Newton corrections in the steps of one map; a thousand take about a hundredth of a
+second."""
 FIRST_ACCURACY = 1e-5
-"""Accuracy of the first maps: of slip in a step, relative to what friction does to it in the shortest
+"""Accuracy of the first maps: of slip in a step, relative to the effect of friction on it in the shortest
 time."""
 SHORTEST_SLIP = 1e-13
-"""Of the span: a step of slip that fails though it is so short is left out."""
+"""Share of the span below which a failing step of slip is left out."""
 MOST_LEFT_OUT = 20
 REST_TAKES = 20.0
-"""A rest may take as long as so many corrections."""
+"""Time that a rest may take, in corrections."""
 
 
 POSITION, MIDWAY = 0, 1
@@ -62,10 +64,10 @@ RESTED, LONGEST, MIDDLE, LEFT_OUT = 0, 1, 2, 3
 
 
 class Workspace(NamedTuple):
-    """Workspace for a map: that of its steps, the tangent, and what is summed on the way.
+    """Arrays for a map: those of its steps, the tangent, and sums on the way.
 
-    totals [2]: POSITION, its integral, and MIDWAY, that half way through the longest rest. times [4]: at rest in all
-    (RESTED), the LONGEST rest and its MIDDLE; how often slip was LEFT_OUT.
+    totals [2]: POSITION, its integral, and MIDWAY, the position half way through the longest rest. times [4]:
+    sum of all rests (RESTED), the LONGEST rest and its MIDDLE; number of times that slip was LEFT_OUT.
     """
 
     step: StepRoom
@@ -75,9 +77,9 @@ class Workspace(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """How far a map is: where, whether at rest, just set off, the next step, and what guesses it.
+    """Progress of a map: place, whether at rest, whether slip has just begun, the next step.
 
-    before: > 0 the length of the step taken before, < 0 that of one from here that was not accurate, 0 for neither.
+    before: > 0 length of the previous step, < 0 length of an inaccurate step tried from here, 0 for neither.
     """
 
     place: SlipPlace
@@ -88,7 +90,7 @@ class Progress(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Position and slip after a map, and the corrections its steps took; -1: gave up."""
+    """Position and slip after a map, and the number of corrections in its steps; -1: gave up."""
 
     x: complex
     w: complex
@@ -97,7 +99,7 @@ class Image(NamedTuple):
 
 @inner
 def room_for_maps() -> Workspace:
-    """Workspace for maps, one after another."""
+    """Return arrays for maps, one after another."""
     kind = np.zeros(DIRECTIONS, np.complex128)
     tangent = Tangent(np.zeros(DIRECTIONS), np.zeros(DIRECTIONS), kind, kind.copy())
     return Workspace(step_room(), tangent, np.zeros(2, np.complex128), np.zeros(4))
@@ -105,25 +107,25 @@ def room_for_maps() -> Workspace:
 
 @inner
 def root_along(body: BodyNumbers) -> float:
-    """The root of the stiffness along the belt: position to energy."""
+    """Return the root of the stiffness along the belt, which turns position into root of energy."""
     return math.sqrt(body.stiffness_mean + body.stiffness_split)
 
 
 @inner
 def root_across(body: BodyNumbers) -> float:
-    """The same across the belt."""
+    """Return the root of the stiffness across the belt."""
     return math.sqrt(body.stiffness_mean - body.stiffness_split)
 
 
 @inner
 def quickest(body: BodyNumbers) -> float:
-    """The largest rate of loads and body."""
+    """Return the largest rate of loads and body."""
     return max(body.frequency, math.sqrt(body.stiffness_mean + abs(body.stiffness_split)))
 
 
 @inner
 def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) -> Progress:
-    """The beginning of a map, where the tangent is the identity in the norm of energy."""
+    """Begin a map, with the tangent at the identity in the norm of energy."""
     tangent, r, body = room.tangent, abs(w), case.body
     resting = r <= 1e-14 * (swing_of(body) + abs(case.belt_speed))
     unit = w.conjugate() / r if not resting else 0j
@@ -174,7 +176,7 @@ def _rest(case: Case, at: Progress, end: float, room: Workspace, track: Track) -
 
 @inner
 def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Track) -> Progress:
-    """Go the short way to rest: slip falls evenly there."""
+    """Go the short way to rest, on which slip falls evenly."""
     body, belt_speed, tangent = case.body, case.belt_speed, room.tangent
     tau, turned = place.tau + wait, cmath.exp(1j * place.theta)
     w = place.r * turned
@@ -202,8 +204,9 @@ def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Tra
 
 
 class Approach(NamedTuple):
-    """What a mass would feel at rest here: force and its rate, limit of friction; time to rest if slip goes
-    on so.
+    """Forces on a mass as if at rest here: holding force, its rate, and the limit of friction.
+
+    wait: time to rest.
     """
 
     held: complex
@@ -228,7 +231,10 @@ def _approach(case: Case, place: SlipPlace) -> Approach:
 
 @inner
 def _lands(case: Case, place: SlipPlace, near: Approach, accuracy: float) -> bool:
-    """Whether rest is so near that slip may go there evenly; with the rounding of time it always is."""
+    """Check whether rest is so near that slip may fall to it evenly.
+
+    Within the rounding of time it always is.
+    """
     margin = near.limit - abs(near.held)
     if margin <= 0.0:
         return False
@@ -238,7 +244,7 @@ def _lands(case: Case, place: SlipPlace, near: Approach, accuracy: float) -> boo
 
 @inner
 def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, track: Track) -> Progress:
-    """Slip that no step resolves is as good as rest: it is left out, and time goes on a moment."""
+    """Treat slip that no step resolves as rest: leave it out, and let time go on a moment."""
     if abs(near.held) < near.limit:
         return _land(case, place, 0.0, room, track)
     room.times[LEFT_OUT] += 1.0
@@ -248,8 +254,9 @@ def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, tra
 
 @inner
 def _slip(case: Case, at: Progress, end: float, accuracy: float, room: Workspace, track: Track) -> Progress:
-    """One step of slip, or the end of it; the way as it was, with a shorter step, where that is not
-    accurate.
+    """Take one step of slip, or the end of it.
+
+    If the step is not accurate, return the same place with a shorter step.
     """
     place, step = at.place, room.step
     near = _approach(case, place)
@@ -287,7 +294,7 @@ def _slip(case: Case, at: Progress, end: float, accuracy: float, room: Workspace
 
 @inner
 def _within(part: float, case: Case, place: SlipPlace, h: float, step: StepRoom) -> Any:
-    """A while into a solved step; it is taken anew to there."""
+    """Return position, velocity and friction a time ``part`` into a solved step, by a new step to there."""
     r, turned = place.r, cmath.exp(1j * place.theta)
     x, now = place.x, instant_at(case.body, place.tau + part)
     if part > 0.0:
@@ -310,7 +317,7 @@ _note_slip = panel_writer(_within)
 
 @inner
 def _unit(case: Case) -> float:
-    """The slip that accuracies are relative to."""
+    """Return the slip that accuracies are relative to."""
     body = case.body
     return body.normal_load * case.law.sliding_friction(0.0) / quickest(body)
 
@@ -319,9 +326,10 @@ def _unit(case: Case) -> float:
 def polar_map(
     case: Case, start: SlipPlace, end: float, accuracy: float, room: Workspace, track: Track
 ) -> Image:
-    """From a place (theta is not read where r = 0) until the end; the room holds tangent and sums.
+    """Map from a place until the end; the workspace holds tangent and sums.
 
-    accuracy: of slip in each step, relative to ``_unit``. On a track with room every piece of the way is noted.
+    theta of the place is not read for r = 0. accuracy: of slip in each step, relative to ``_unit``. A track
+    with room records every piece of the motion.
     """
     finest = accuracy * _unit(case)
     at = _set_out(case, start.tau, start.x, start.r * cmath.exp(1j * start.theta), room)

@@ -1,9 +1,11 @@
-"""One step of slip in polar coordinates: five-stage Radau IIA collocation (order 9, L-stable), with its derivative.
+"""Step of slip in polar coordinates by five-stage Radau IIA collocation (order 9, L-stable).
 
-Slip w = r exp(i theta) of a mass at x under the force a of loads, springs and dashpots obeys r' = a.e - f(r) and
-r theta' = a.n, with e along the slip and n across. Near rest friction turns slip towards the force at the rate f/r:
-explicit steps must follow that, this one need not. Multiplied by r the second equation holds where r = 0, too, so
-that a step may start from rest: theta is then the direction of the force.
+The step also gives its derivative.
+
+Slip w = r exp(i theta) of a mass at x under the force a of loads, springs and dashpots obeys r' = a.e - f(r)
+and r theta' = a.n, with e along the slip and n across. Near rest friction turns slip towards the force at the
+rate f/r; explicit steps must follow that, this one need not. Multiplied by r, the second equation also holds
+at r = 0, so that a step may start from rest: theta is then the direction of the force.
 
 Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), sections IV.5 and IV.8.
 """
@@ -31,22 +33,23 @@ from frictionlab.motion.steppers.radau_panel import MATRIX, NODES, STAGES, WEIGH
 from frictionlab.values.quantities import Floats
 
 DIRECTIONS = 4
-"""Of the state: positions and slip, along and across."""
+"""Number of directions of the state: positions and slip, along and across."""
 MOST_TRIES = 10
 CONVERGED = 1e-8
-"""Relative change of a step's unknowns after which the next one, Newton's steps converging fast, is
-rounding."""
+"""Relative change of a step's unknowns after which the next change is rounding, since Newton's steps converge
+fast."""
 ALL_NODES: Floats = np.concatenate(([0.0], NODES))
 INVERSE: Floats = np.ascontiguousarray(np.linalg.inv(MATRIX))
 LEAVING: Floats = INVERSE.sum(axis=1)
 _gaps = ALL_NODES[:, None] - ALL_NODES[None, :] + np.eye(STAGES + 1)
 LAGRANGE: Floats = 1.0 / _gaps.prod(axis=1)
 HIGHEST: Floats = LAGRANGE / 252.0
-"""Values at the nodes to the coefficient of the highest Legendre polynomial; 252 x^5 leads it on [0, 1]."""
+"""Weights that turn values at the nodes into the coefficient of the highest Legendre polynomial; 252 x^5
+leads it on [0, 1]."""
 
 
 class SlipPlace(NamedTuple):
-    """Where a step of slip starts: time, position, slip."""
+    """Start of a step of slip: time, position, slip."""
 
     tau: float
     x: complex
@@ -55,9 +58,9 @@ class SlipPlace(NamedTuple):
 
 
 class Tangent(NamedTuple):
-    """How the state changes with that at the start of the map, a column for each of its directions [4].
+    """Derivative of the state with respect to that at the start of the map, a column for each direction [4].
 
-    While it slips by r and theta; ``total``: of the integral of the position.
+    The state is r and theta of slip, and x; ``total`` is the derivative of the integral of the position.
     """
 
     r: Any
@@ -67,9 +70,11 @@ class Tangent(NamedTuple):
 
 
 class StepRoom(NamedTuple):
-    """Workspace for one step: slip at its start and stages [6], x, e, f and forces at the stages [5], linear systems.
+    """Arrays for one step.
 
-    corrections: of Newton's method, in all steps [1].
+    They hold slip at its start and stages [6], x, e, f and forces at the stages [5], and linear systems.
+
+        corrections: of Newton's method, in all steps [1].
     """
 
     r: Any
@@ -91,7 +96,7 @@ class StepRoom(NamedTuple):
 
 @inner
 def step_room() -> StepRoom:
-    """Workspace for steps."""
+    """Return arrays for steps."""
     n, kind = STAGES, np.zeros(STAGES, np.complex128)
     real = np.zeros(n)
     return StepRoom(
@@ -115,7 +120,7 @@ def step_room() -> StepRoom:
 
 @inner
 def begin_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
-    """What the stages know of loads and belt."""
+    """Write loads and belt at the stages."""
     room.r[0], room.theta[0] = place.r, place.theta
     for j in range(STAGES):
         now = instant_at(case.body, place.tau + NODES[j] * h)
@@ -126,7 +131,7 @@ def begin_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
 
 @inner
 def friction_slope(case: Case, r: float) -> float:
-    """How friction grows with the speed of slip: a difference quotient of the law's own curve."""
+    """Return the slope of friction over the speed of slip: a difference quotient of the law's own curve."""
     shift = 1e-5 * r + 1e-9 * (swing_of(case.body) + abs(case.belt_speed))
     low = max(r - shift, 0.0)
     return (case.law.sliding_friction(r + shift) - case.law.sliding_friction(low)) / (r + shift - low)
@@ -134,7 +139,7 @@ def friction_slope(case: Case, r: float) -> float:
 
 @inner
 def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
-    """Positions, friction, and forces turned so that the slip is real, at the stages."""
+    """Write positions, friction, and forces turned so that the slip is real, at the stages."""
     # slip w = r exp(i theta): friction acts against r alone, what turns slip is the force across it
     for j in range(STAGES):
         room.along[j] = complex(math.cos(room.theta[j + 1]), math.sin(room.theta[j + 1]))
@@ -153,7 +158,7 @@ def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
 
 @inner
 def _turning(j: int, room: StepRoom) -> float:
-    """The derivative of theta at a stage, times the step."""
+    """Return the derivative of theta at a stage, times the step."""
     total = 0.0
     for k in range(STAGES):
         total += INVERSE[j, k] * (room.theta[k + 1] - room.theta[0])
@@ -162,7 +167,7 @@ def _turning(j: int, room: StepRoom) -> float:
 
 @inner
 def _assemble(case: Case, h: float, room: StepRoom) -> None:
-    """The Jacobian of the stages' equations: rows and columns first of r, then of theta."""
+    """Write the Jacobian of the stages' equations: rows and columns first of r, then of theta."""
     # r' = Re(force) - friction(r) and r theta' = Im(force), each times h; the inverse of the collocation matrix gives
     # the derivatives at the stages from the values there
     n = STAGES
@@ -188,7 +193,7 @@ def _assemble(case: Case, h: float, room: StepRoom) -> None:
 
 @inner
 def _lack(h: float, room: StepRoom) -> None:
-    """The right side: what the stages' equations lack."""
+    """Write the right side: the residuals of the stages' equations."""
     for j in range(STAGES):
         growth = 0.0
         for k in range(STAGES):
@@ -199,8 +204,9 @@ def _lack(h: float, room: StepRoom) -> None:
 
 @inner
 def _move(room: StepRoom) -> float:
-    """Take Newton's step, or as much of it as leaves slip at the stages and turns it by less than a
-    radian.
+    """Take Newton's step, or a part of it that keeps slip at the stages and turns it by less than a radian.
+
+    Return the part taken.
     """
     part = 1.0
     for j in range(STAGES):
@@ -217,7 +223,7 @@ def _move(room: StepRoom) -> float:
 
 @inner
 def solve_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> bool:
-    """Slip at the stages from the guess there (Newton's method); False where it does not converge."""
+    """Solve for slip at the stages, from the guess there, by Newton's method; return False if that fails."""
     for _ in range(MOST_TRIES):
         room.corrections[0] += 1.0
         _forces(case, place, h, room)
@@ -241,8 +247,9 @@ def solve_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> bool:
 
 @inner
 def step_error(h: float, accuracy: float, room: StepRoom) -> float:
-    """The highest Legendre coefficients of slip in the step, over what they may be: below one it is
-    accurate.
+    """Return the highest Legendre coefficients of slip over their tolerance.
+
+    Below one the step is accurate.
     """
     growth, turn, largest = 0.0, 0.0, 0.0
     for k in range(STAGES + 1):
@@ -255,7 +262,7 @@ def step_error(h: float, accuracy: float, room: StepRoom) -> float:
 
 @inner
 def end_step(case: Case, place: SlipPlace, h: float, room: StepRoom, tangent: Tangent) -> complex:
-    """Carry the tangent over a solved step; returns the integral of the position."""
+    """Carry the tangent over a solved step, and return the integral of the position."""
     n, body = STAGES, case.body
     _assemble(case, h, room)
     for j in range(n):
@@ -288,7 +295,7 @@ def end_step(case: Case, place: SlipPlace, h: float, room: StepRoom, tangent: Ta
 
 @inner
 def _polynomial(values: Any, at: float) -> float:
-    """Through the values at the start and the stages of a step, at a share of it, also beyond its end."""
+    """Evaluate the polynomial through start and stages of a step at a share of it, also beyond its end."""
     total = 0.0
     for k in range(STAGES + 1):
         weight = LAGRANGE[k]
@@ -301,7 +308,7 @@ def _polynomial(values: Any, at: float) -> float:
 
 @inner
 def guess_on(place: SlipPlace, first: float, last: float, room: StepRoom) -> None:
-    """As the last solved step goes on: between these two shares of it."""
+    """Guess slip as the last solved step continues, between these two shares of it."""
     r, theta = np.empty(STAGES), np.empty(STAGES)
     for j in range(STAGES):
         at = first + NODES[j] * (last - first)
@@ -314,7 +321,7 @@ def guess_on(place: SlipPlace, first: float, last: float, room: StepRoom) -> Non
 def guess_afresh(
     place: SlipPlace, h: float, held: complex, rate: complex, limit: float, room: StepRoom
 ) -> None:
-    """Slip that goes straight on, or sets off along the force that held the mass."""
+    """Guess slip that goes straight on, or starts along the force that held the mass."""
     along = complex(math.cos(place.theta), math.sin(place.theta))
     excess, rise = (held * along.conjugate()).real - limit, (rate * along.conjugate()).real
     turn = (rate * along.conjugate()).imag / (limit + abs(excess))

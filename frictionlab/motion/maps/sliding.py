@@ -1,9 +1,10 @@
-"""The period map of a sliding law: slip by DOP853, coming to rest, stick, release; on the line and in the plane.
+"""Period map of a sliding law: slip by DOP853, coming to rest, stick, release; on the line and in the plane.
 
-What is integrated is the deviation (y, u = y') from the body's harmonic reference. On the line a leg keeps the
-sign of its slip, so that its law is smooth across the end of the leg, and the end is found by secant steps. In
-the plane friction turns with the slip and only rest itself is singular: a step never reaches further than nine
-tenths of the way to rest, and what is left below the accuracy is closed by the balance of momentum.
+The map integrates the deviation (y, u = y') from the harmonic reference of the body. On the line a leg keeps
+the sign of its slip, so that its law is smooth across the end of the leg; the end is found by secant steps.
+In the plane friction turns with the slip and only rest itself is singular. A step there never goes further
+than nine tenths of the way to rest, and the rest of the way, below the accuracy, is closed by the balance of
+momentum.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ from frictionlab.motion.steppers.step import growth_of, longest_step
 
 
 class Mapped(NamedTuple):
-    """A state after the span of the body, and what was met on the way."""
+    """State after the span of the body, with sums and extremes on the way."""
 
     y: Any
     u: Any
@@ -75,7 +76,7 @@ MOST_STEPS = 200_000
 
 @fast_embedded
 def _remembering_rates(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> Any:
-    """``rates`` of a body that remembers, and the rates of its relaxing forces."""
+    """Return ``rates`` of a body with relaxing springs, and the rates of their forces."""
     a, rub = rates(problem, tau, y, u)
     relaxing = problem.body.relaxing
     return a - along_x1(summed(force), u), rub, relaxing.stiffness * u.real - relaxing.rate * force
@@ -108,19 +109,19 @@ def _state_with(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> State:
 
 @inner
 def state_at(problem: Flow, tau: float, y: Any, u: Any) -> State:
-    """The state from which slip goes on, when the body knows its relaxing forces."""
+    """Return the state from which slip goes on; the body knows its relaxing forces."""
     return _state_with(problem, tau, y, u, deviating_force(problem.body, tau))
 
 
 @inner
 def state_after(problem: Flow, tau: float, taken: Any) -> State:
-    """The state at the end of a step."""
+    """Return the state at the end of a step."""
     return _state_with(problem, tau, taken.x, taken.v, taken.e)
 
 
 @inner
 def _still(y: Any, u: Any, force: Any) -> State:
-    """Where it rests: its rates are of no account."""
+    """Return a state at rest, whose rates are not used."""
     return State(y, u, u, u, force, force)
 
 
@@ -130,14 +131,14 @@ _growing = by_relaxing(
         start.e + problem.body.relaxing.stiffness * moved - (lasts * problem.body.relaxing.rate) * start.e
     ),
 )
-"""_growing(problem, start, lasts, moved): relaxing forces after a while so short that they grow evenly."""
+"""_growing(problem, start, lasts, moved): relaxing forces after a time so short that they grow evenly."""
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------
 
 
 class Node(NamedTuple):
-    """Where a step starts: time, state, slip and its rate."""
+    """Start of a step: time, state, slip and its rate."""
 
     tau: float
     state: State
@@ -147,9 +148,10 @@ class Node(NamedTuple):
 
 
 class Landing(NamedTuple):
-    """A verdict on a step (or the wait until rest) and its end.
+    """Verdict on a step (or on the wait until rest), and its end.
 
-    Repeat it with h, accept it, rest after h, or accept it with the slip still lost in the rounding of the velocity.
+    Verdicts: repeat the step with h; accept it; rest after h; accept it, with slip still lost in the rounding
+    of the velocity.
     """
 
     verdict: int
@@ -171,27 +173,27 @@ stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
 
 @inner
 def node_at(problem: Flow, tau: float, state: State) -> Node:
-    """The node with this state, at most one radian from the anchor."""
+    """Return the node with this state, at most one radian from the anchor."""
     w = slip_at(problem, tau, state.v)
     return Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
 
 
 @inner
 def near_rest(accuracy: float, limit: float) -> float:
-    """The speed of planar slip below which steps end; limit: force of friction at rest."""
+    """Return the speed of planar slip below which steps end; limit: force of friction at rest."""
     return max(math.sqrt(accuracy * limit), 1e-2 * accuracy)
 
 
 @inner
 def step_towards_rest(node: Node, limit: float, h: float) -> float:
-    """How far a step of planar slip may go: nine tenths of the way to rest, and no farther than is stable."""
+    """Return the longest step of planar slip: at most nine tenths of the way to rest, and stable."""
     closing = -(node.rate * node.w.conjugate()).real / node.speed
     h = min(h, 4.0 * node.speed / limit)  # slip turns towards the force at the rate limit/speed
     return select(closing > 0.0, min(h, 0.9 * node.speed / max(closing, 1e-300)), h)
 
 
 def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y: complex) -> Landing:
-    """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
+    """Limit a step towards rest, or go to rest at once if rest is nearer than the accuracy."""
     body, belt_speed, w = problem.body, problem.belt_speed, node.w
     speed, now = node.speed, instant_near(problem, node.tau)
     pressed = normal_load(body, now)
@@ -222,7 +224,7 @@ _before = by_dimension(
 
 
 def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: float) -> Landing:
-    """Whether the slip velocity passed through zero, between the nodes included."""
+    """Decide whether slip passed through zero in the step, between its nodes included."""
     side, state, limit = problem.side, node.state, h
     after = side * slip_at(problem, node.tau + h, taken.v)
     if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
@@ -243,7 +245,7 @@ def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: 
 def _after_in_the_plane(
     problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: complex
 ) -> Landing:
-    """Whether the slip came close to rest between the nodes: then the step was too long."""
+    """Decide whether slip came close to rest between the nodes: then the step was too long."""
     after = slip_at(problem, node.tau + h, taken.v)
     there = state_after(problem, node.tau + h, taken)
     if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, there.a), h):
@@ -259,7 +261,7 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 
 @inner
 def motion_in_slip(part: float, problem: Flow, node: Node, taken: Dense) -> Any:
-    """A while into a step."""
+    """Return position, velocity and friction at the time ``part`` after the start of a step."""
     body, tau = problem.body, node.tau + part
     (y, u), now = motion_within(taken, part), instant_near(problem, tau)
     _a, f = rates(problem, tau, y, u)
@@ -269,7 +271,7 @@ def motion_in_slip(part: float, problem: Flow, node: Node, taken: Dense) -> Any:
 
 @inner
 def _resting(part: float, problem: Flow, tau: float, x: Any) -> Any:
-    """A while into a time at rest that began at x."""
+    """Return position, velocity and friction at the time ``part`` after the start of a rest at x."""
     body, belt_speed = problem.body, problem.belt_speed
     now = instant_at(body, tau + part)
     x = x + belt_path(body, belt_speed, tau, tau + part)
@@ -278,7 +280,9 @@ def _resting(part: float, problem: Flow, tau: float, x: Any) -> Any:
 
 
 class Hop(NamedTuple):
-    """The short while next to rest that is closed by momentum: slip changes evenly, friction is its mean."""
+    """Short time next to rest, closed by the balance of momentum: slip changes evenly, friction is its
+    mean.
+    """
 
     tau: float
     lasts: float
@@ -306,8 +310,9 @@ _note_slip, _note_stick, note_hop = (
 
 @inner
 def note_stick(track: Track, problem: Flow, tau: float, lasts: float, x: Any) -> None:
-    """Note a time at rest from x on in panels of an eighth of the quickest period: the loads vary within
-    it.
+    """Record a time at rest from x on, in panels of an eighth of the quickest period.
+
+    The loads vary within a rest.
     """
     body, belt_speed = problem.body, problem.belt_speed
     panels = 1 + int(4.0 / math.pi * quickest_of(body) * lasts)
@@ -319,7 +324,7 @@ def note_stick(track: Track, problem: Flow, tau: float, lasts: float, x: Any) ->
 
 @inner
 def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase) -> None:
-    """The time at rest from x on, and the short while after it that the balance of momentum closes."""
+    """Record the time at rest from x on, and the short time after it that the balance of momentum closes."""
     slips = tau + rest.stuck
     if rest.stuck > 0.0:
         note_stick(track, problem, tau, rest.stuck, x)
@@ -332,7 +337,7 @@ def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase
 
 @inner
 def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
-    """The deviation with which slip begins."""
+    """Return the state of the deviation with which slip begins."""
     body, tau = problem.body, rest.tau
     # slip sets off with the velocity that the balance of momentum gives it
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
@@ -342,7 +347,7 @@ def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
 
 
 class Attempt(NamedTuple):
-    """What became of a step, the length of the next one, and the steps tried."""
+    """Result of a step: its landing, the length of the next step, and the number of steps tried."""
 
     landing: Landing
     next: float
@@ -351,7 +356,7 @@ class Attempt(NamedTuple):
 
 @inner
 def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, track: Track) -> Attempt:
-    """One step of slip from a node, of h at most; noted if it is taken."""
+    """Take a step of slip from a node, of h at most; record it if it is taken."""
     state, room = node.state, track.stick.size
     done = _before(problem, node, accuracy, h, state.x)
     if done.verdict == REST:
@@ -376,10 +381,10 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
 
 @inner
 def sliding_map(case: Case, y: Any, u: Any, forces: Any, accuracy: float, track: Track) -> Mapped:
-    """One span from the deviation (y, u) at tau = 0; accuracy is each step's, in the norm of energy.
+    """Map one span from the deviation (y, u) at tau = 0.
 
-    forces: of the deviation, of what of the body relaxes; nothing where nothing does. On a track with room every
-    piece of the way is noted.
+    forces: relaxing forces of the deviation; nothing for a body without. accuracy: of each step, in the norm
+    of energy. A track with room records every piece of the motion.
     """
     image = Mapped(y, u, 0.0 * y, 0.0, 1e300, -1.0, 0, forces)
     for k in range(pieces_of(case.body)):
@@ -394,8 +399,9 @@ def sliding_map(case: Case, y: Any, u: Any, forces: Any, accuracy: float, track:
 def _sliding_piece(
     case: Case, tau: float, end: float, image: Mapped, accuracy: float, track: Track
 ) -> Mapped:
-    """From one corner of what changes in time to the next; image: the state at the first, and what was met so
-    far.
+    """Map one piece between two corners of the functions of time.
+
+    image: state at the first corner, with sums and extremes so far.
     """
     law, belt_speed, zero = case.law, case.belt_speed, case.zero
     y, u, friction_impulse, stuck, closest, released, steps, forces = image

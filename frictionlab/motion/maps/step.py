@@ -246,8 +246,8 @@ def _error(flow: Flow, work: Work, zero: Any) -> float:
 def step(flow: Flow, tau: float, h: float, work: Work, zero: Any) -> float:
     """Take one step from ``work.start`` to ``work.end``, and return its error.
 
-    It starts at the anchor of the flow. The error is that in the norm of energy, impulse included. It is infinite if a scalar has left its set of values on the
-    way.
+    It starts at the anchor of the flow. The error is that in the norm of energy, impulse included. It is
+    infinite if a scalar has left its set of values on the way.
     """
     size = rows_of(flow)
     factor(flow, h, work, zero)

@@ -1,4 +1,4 @@
-"""A mass at rest on the belt: the force that holds it, and when slip begins."""
+"""Rest of the mass on the belt: the force that holds it, and the time at which slip begins."""
 
 from __future__ import annotations
 
@@ -36,8 +36,9 @@ from frictionlab.scene.body import BodyNumbers
 
 @inner
 def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: Any, end: float) -> float:
-    """First time the held force reaches the limit, or end: what is left stays above a parabola that bounds
-    it.
+    """Return the first time at which the holding force reaches its limit, or end.
+
+    The distance to the limit stays above a parabola that bounds it.
     """
     holds = law.static_friction()
     swell, longest, start = holds * normal_load_curvature(body), look_ahead(body), tau
@@ -65,8 +66,9 @@ def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: An
 
 @inner
 def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> float:
-    """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without
-    slip.
+    """Return the number of whole periods for which a mass at rest at tau = 0 surely does not slip.
+
+    It is at least one.
     """
     if look_ahead(body) < 1e300:  # the force of such springs grows as nobody looks at here
         return 1.0
@@ -90,8 +92,9 @@ def _velocity_at(body: BodyNumbers, belt_speed: float, tau: float) -> Any:
 
 @inner
 def _room_at_rest(law: Any, body: BodyNumbers, belt_speed: float, x: Any, start: float, end: float) -> float:
-    """By how much static friction exceeds, all the time between two corners, what holds a mass at x at the
-    first.
+    """Return the least excess of static friction over the holding force, between two corners of time.
+
+    x: position of the mass at the first corner.
     """
     holds, period, room, samples = (
         law.static_friction(),
@@ -126,11 +129,13 @@ def _start_in_the_plane(
     bend: complex,
     held: complex,
 ) -> Start:
-    """Slip sets off along the held force; where that is at the limit of slip, it grows with the square of time.
+    """Start slip along the holding force.
 
-    Then it lags behind the force that turns: slip = b2 t^2 + b3 t^3 + ..., from the expansion of the equation
-    of motion; the series carries the step control beyond the singular instant. It takes friction as constant,
-    and ends before a law that falls has fallen by more than the accuracy bears.
+    If that force is at the limit of slip, slip grows with the square of time.
+
+        Slip then lags behind the force that turns: slip = b2 t^2 + b3 t^3 + ..., from the expansion of the
+        equation of motion. The series carries the step control beyond the singular instant. It takes friction as
+        constant, and ends before a falling law has fallen by more than the accuracy allows.
     """
     law, body = case.law, case.body
     pressed = normal_load(body, now)
@@ -171,7 +176,7 @@ _start = by_dimension(
 
 
 class StickPhase(NamedTuple):
-    """How a time at rest ended: when, where, with which slip and side, and what friction did meanwhile."""
+    """End of a time at rest: its time, position, slip and side, and the impulse of friction meanwhile."""
 
     tau: float
     x: Any
@@ -184,8 +189,9 @@ class StickPhase(NamedTuple):
 
 @inner
 def end_of_rest(case: Case, tau: float, x: Any, end: float) -> float:
-    """When slip begins of a mass at rest at tau, x: tau itself where friction cannot hold it; end at the
-    latest.
+    """Return the time at which a mass at rest at tau, x begins to slip, end at the latest.
+
+    It is tau itself if friction cannot hold the mass.
     """
     law, body, belt_speed = case.law, case.body, case.belt_speed
     now, holds = instant_at(body, tau), law.static_friction()
@@ -202,7 +208,7 @@ def end_of_rest(case: Case, tau: float, x: Any, end: float) -> float:
 
 @inner
 def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> StickPhase:
-    """From rest at tau, x until slip begins, or until the end of the period."""
+    """Follow rest at tau, x until slip begins, or until the end of the period."""
     body, belt_speed = case.body, case.belt_speed
     start, until = tau, end_of_rest(case, tau, x, end)
     stuck, friction_impulse = until - start, 0.0 * x

@@ -1,6 +1,6 @@
-"""The parts of a scene: loads, the motion across the belt, prescribed slips, vibrations and a start.
+"""Parts of a scene: loads, the motion across the belt, prescribed slips, vibrations and a start.
 
-A number with a dimension says so beside its limits: from that follow its key and its value in SI units
+A number with a dimension says so beside its limits: its key and its value in SI units follow from that
 (``dimensional.py``).
 """
 
@@ -32,13 +32,16 @@ from frictionlab.values.quantities import Finite, NonNegative, Positive, Record
 
 
 class ScenePart(Record):
-    """A part of a scene; alternatives: names of which exactly one is given, where there are any."""
+    """Part of a scene.
+
+    ``alternatives`` names fields of which exactly one is given; it is empty where there are none.
+    """
 
     alternatives: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def key(cls, name: str) -> str:
-        """Under which the part has the value of this nondimensional name."""
+        """Return the key under which the part has the value of a nondimensional name."""
         return name
 
     @model_validator(mode="after")
@@ -50,13 +53,23 @@ class ScenePart(Record):
 
 
 class _Force(ScenePart):
-    """A periodic force given by an unbalance or by its amplitude.
+    """Periodic force given by an unbalance or by its amplitude.
 
-    unbalance [L], >= 0: the force has the amplitude unbalance*frequency^2; or instead
-    amplitude [K_1 L], >= 0: its amplitude.
-    phase [degrees]: the force is the waveform at frequency*tau + phase.
-    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
+    Parameters
+    ----------
+    unbalance : float, >= 0, optional
+        Unbalance [L]: the force has the amplitude unbalance*frequency^2. Exactly one is given: ``unbalance``
+        or ``amplitude``.
+    amplitude : float, >= 0, optional
+        Amplitude of the force [K_1 L].
+    phase : float, default 0
+        Phase of the force, which is the waveform at frequency*tau + phase [degrees].
+    waveform : str or dict, optional
+        Waveform: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude, phase}, ...]};
+        sine if left out.
 
+    References
+    ----------
     Waveforms of such a force are compared by Michaux, Ferri & Cunefare (2008).
     """
 
@@ -67,33 +80,70 @@ class _Force(ScenePart):
     waveform: Waveform | None = None
 
     def size(self, frequency: float) -> float:
-        """What the waveform is multiplied by [K_1 L]; frequency: that of the drive."""
+        """Compute the factor of the waveform.
+
+        Parameters
+        ----------
+        frequency : float, > 0
+            Frequency of the drive [omega_1].
+
+        Returns
+        -------
+        float
+            Amplitude of the force [K_1 L].
+        """
         size = self.amplitude if self.unbalance is None else self.unbalance * frequency**2
         assert size is not None
         return size
 
     def phasor(self, frequency: float) -> complex:
-        """F of the sine Im(F exp(i frequency tau)) [K_1 L]."""
+        """Compute the phasor F of a sine Im(F exp(i frequency tau)).
+
+        Parameters
+        ----------
+        frequency : float, > 0
+            Frequency of the drive [omega_1].
+
+        Returns
+        -------
+        complex
+            Phasor [K_1 L].
+        """
         return cmath.rect(self.size(frequency), math.radians(self.phase))
 
 
 class Drive(_Force):
-    """The force along x1: unbalance*frequency^2 (or amplitude) times waveform(frequency*tau + phase).
+    """Force along x1: unbalance*frequency^2 (or amplitude) times waveform(frequency*tau + phase).
 
-    unbalance [L], >= 0: the force has the amplitude unbalance*frequency^2; or instead
-    amplitude [K_1 L], >= 0: its amplitude.
-    phase [degrees]: the force is the waveform at frequency*tau + phase.
-    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
-    frequency [omega_1], > 0: of the drive; everything else that vibrates has it in some ratio.
-    direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
+    Parameters
+    ----------
+    unbalance : float, >= 0, optional
+        Unbalance [L]: the force has the amplitude unbalance*frequency^2. Exactly one is given: ``unbalance``
+        or ``amplitude``.
+    amplitude : float, >= 0, optional
+        Amplitude of the force [K_1 L].
+    phase : float, default 0
+        Phase of the force, which is the waveform at frequency*tau + phase [degrees].
+    waveform : str or dict, optional
+        Waveform: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude, phase}, ...]};
+        sine if left out.
+    frequency : float, > 0
+        Frequency of the drive [omega_1]; all else that vibrates has it or a ratio of it.
+    direction : float, optional
+        Direction of the force, from x1 towards x2, in scenes with ``transverse`` [degrees]; along x1 if left
+        out.
 
+    References
+    ----------
+    Waveforms of such a force are compared by Michaux, Ferri & Cunefare (2008).
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Drive(unbalance=10, frequency=2).size(2)
     40.0
     >>> fl.Drive(amplitude=3, frequency=2, waveform="square", phase=90)
     Drive(amplitude=3, phase=90, waveform='square', frequency=2)
-
-    Waveforms of such a force are compared by Michaux, Ferri & Cunefare (2008).
     """
 
     frequency: Annotated[Positive, FREQUENCY]
@@ -101,14 +151,25 @@ class Drive(_Force):
 
 
 class Load(_Force):
-    """The force along x2, across the belt, beside a drive along x1.
+    """Force along x2, across the belt, beside a drive along x1.
 
-    unbalance [L], >= 0: the force has the amplitude unbalance*(frequency of the drive)^2; or instead
-    amplitude [K_1 L], >= 0: its amplitude.
-    phase [degrees]: the force is the waveform at its frequency*tau + phase.
-    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
-    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
+    Parameters
+    ----------
+    unbalance : float, >= 0, optional
+        Unbalance [L]: the force has the amplitude unbalance*(frequency of the drive)^2. Exactly one is given:
+        ``unbalance`` or ``amplitude``.
+    amplitude : float, >= 0, optional
+        Amplitude of the force [K_1 L].
+    phase : float, default 0
+        Phase of the force, which is the waveform at its frequency*tau + phase [degrees].
+    waveform : str or dict, optional
+        Waveform: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude, phase}, ...]};
+        sine if left out.
+    frequency_ratio : float or str, > 0, optional
+        Frequency of the force as a multiple of the drive's, p/q [-]; 1 if left out.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Load(amplitude=3, frequency_ratio="3/2", phase=90)
     Load(amplitude=3, phase=90, frequency_ratio=1.5)
@@ -118,19 +179,28 @@ class Load(_Force):
 
 
 class Transverse(ScenePart):
-    """The motion along x2, across the belt: a second degree of freedom, which friction couples to the first.
+    """Motion along x2, across the belt: a second degree of freedom, which friction couples to the first.
 
-    natural_frequency [omega_1], > 0: omega_r, of the motion along x2.
-    damping_ratio [-], >= 0: of the motion along x2.
-    load: the force along x2; none where left out.
+    Parameters
+    ----------
+    natural_frequency : float, > 0
+        Natural frequency omega_r of the motion along x2 [omega_1].
+    damping_ratio : float, >= 0
+        Damping ratio of the motion along x2 [-].
+    load : Load, optional
+        Force along x2; no force if left out.
 
+    References
+    ----------
+    Source: Sulollari, van Dalen & Cabboi, Eqs. 1 and 2.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> across = fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load=fl.Load(unbalance=10))
     >>> round(fl.steady_state(scene.with_(transverse=across), fl.Coulomb(mu=0.4)).mean_friction, 4)
     0.0426
-
-    Source: Sulollari, van Dalen & Cabboi, Eqs. 1 and 2.
     """
 
     natural_frequency: Positive
@@ -139,18 +209,25 @@ class Transverse(ScenePart):
 
 
 Order = Annotated[Positive, Field(le=1.0)]
-"""Of a derivative, in (0, 1]."""
+"""Order of a derivative, in (0, 1]."""
 
 
 class Relaxation(ScenePart):
-    """A spring in series with a dashpot, beside spring and dashpot of the body: the standard linear solid.
+    """Spring in series with a dashpot, beside spring and dashpot of the body: the standard linear solid.
 
     It adds the force stiffness*y, y' = x1' - y/time.
 
-    stiffness [K_1], > 0: of the spring, felt by fast motion.
-    time [1/omega_1], > 0: in which its force relaxes.
-    order [-], 0 < order <= 1: of the derivative of y; below 1 the fractional Zener model.
+    Parameters
+    ----------
+    stiffness : float, > 0
+        Stiffness of the spring, felt by fast motion [K_1].
+    time : float, > 0
+        Time in which the force of the spring relaxes [1/omega_1].
+    order : float, > 0 and <= 1, default 1
+        Order of the derivative of y [-]; below 1 this is the fractional Zener model.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Relaxation(stiffness=0.5, time=1)
     Relaxation(stiffness=0.5, time=1)
@@ -162,11 +239,20 @@ class Relaxation(ScenePart):
 
 
 class Fractional(ScenePart):
-    """A force coefficient*D^order x1 beside spring and dashpot: between a spring (order 0) and a dashpot (order 1).
+    """Force coefficient*D^order x1 beside spring and dashpot of the body.
 
-    coefficient [K_1/omega_1^order], > 0: of the derivative, (i omega)^order of a sine (Weyl).
-    order [-], 0 < order <= 1: of the derivative.
+    It lies between the force of a spring (order 0) and that of a dashpot (order 1).
 
+    Parameters
+    ----------
+    coefficient : float, > 0
+        Coefficient of the derivative [K_1/omega_1^order]; the derivative of a sine is (i omega)^order times
+        it (Weyl).
+    order : float, > 0 and <= 1
+        Order of the derivative [-].
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Fractional(coefficient=0.2, order=0.5)
     Fractional(coefficient=0.2, order=0.5)
@@ -177,32 +263,44 @@ class Fractional(ScenePart):
 
 
 BENDING = "cubic_stiffness", "amplitude_damping", "curvature"
+"""Keys of ``body`` that make it nonlinear."""
 REMEMBERING = "relaxation", "fractional"
+"""Keys of ``body`` that make its force depend on earlier motion."""
 BY_TABLE = "receptance"
-"""Keys of ``body`` that make it nonlinear, that make it remember, and that stands for all of it."""
+"""Key of ``body`` that stands for the whole body."""
 
 
-def file_alone(given: Any) -> Any:
-    """What is given of a receptance by its file alone."""
-    return {"file": given} if isinstance(given, str) else given
+def file_alone(values: Any) -> Any:
+    """Return the values of a receptance that is given by its file alone; other values unchanged."""
+    return {"file": values} if isinstance(values, str) else values
 
 
 def digest_of(table: TabulatedBody, known: str, file: str) -> str:
-    """Of what a file says. Raises ValueError where another is known."""
+    """Return the digest of a file's contents. Raises ValueError if another digest is known."""
     if known and known != table.digest:
         raise ValueError(f"{file} has changed since: leave digest out to take it as it is")
     return table.digest
 
 
 class Receptance(ScenePart):
-    """What a linear body answers, measured or computed by others, in place of its mass, spring and dashpot.
+    """Frequency response of a linear body, measured or computed, in place of its mass, spring and dashpot.
 
-    file: a CSV file with columns frequency [omega_1], real and imaginary [1/K_1] of x1 over force, from frequency 0.
-    free_mass [K_1/omega_1^2], > 0: above the last frequency x1 over force is -1/(free_mass frequency^2).
-    frequency_unit [omega_1], > 0: of the frequencies of the file; 1 where left out.
-    receptance_unit [1/K_1], > 0: of what it says of x1 over force; 1 where left out.
-    digest: found where it is left out, of what the file says; a file that says something else is then refused.
+    Parameters
+    ----------
+    file : str
+        CSV file with columns frequency [omega_1], real and imaginary [1/K_1]: parts of x1 over force, from
+        frequency 0.
+    free_mass : float, > 0, optional
+        Mass [K_1/omega_1^2]: above the last frequency x1 over force is -1/(free_mass frequency^2).
+    frequency_unit : float, > 0, optional
+        Unit of the frequencies in the file [omega_1]; 1 if left out.
+    receptance_unit : float, > 0, optional
+        Unit of x1 over force in the file [1/K_1]; 1 if left out.
+    digest : str, default ""
+        Digest of the contents of the file; found if left out. A file with other contents is then refused.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Receptance(file="no_such_file.csv")
     Traceback (most recent call last):
@@ -217,8 +315,8 @@ class Receptance(ScenePart):
 
     @model_validator(mode="before")
     @classmethod
-    def _file_alone(cls, given: Any) -> Any:
-        return file_alone(given)
+    def _file_alone(cls, values: Any) -> Any:
+        return file_alone(values)
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:
@@ -229,7 +327,13 @@ class Receptance(ScenePart):
         return read_receptance(self.file, self.free_mass, self.frequency_unit is not None)
 
     def body(self) -> TabulatedBody:
-        """The body of the file."""
+        """Return the body of the file.
+
+        Returns
+        -------
+        TabulatedBody
+            Frequencies [omega_1] with x1 over force [1/K_1].
+        """
         table = self._read()
         if self.frequency_unit is None and self.receptance_unit is None:
             return table
@@ -237,16 +341,27 @@ class Receptance(ScenePart):
 
 
 class Body(ScenePart):
-    """What of the body is no linear spring or dashpot; it acts along x1, beside spring 1 and damping_ratio.
+    """Nonlinear and viscoelastic parts of a body, along x1, beside spring 1 and damping_ratio.
 
-    cubic_stiffness [K_1/L^2]: k3 of the force k3 x1^3; a spring that hardens, or softens where negative.
-    amplitude_damping [K_1/(omega_1 L^2)], >= 0: c of the force c x1^2 x1'.
-    curvature [1/L]: r; spring and dashpot follow the strain x1 + r x1^2, their force is
-    x1 + 3 r x1^2 + 2 r^2 x1^3 + 2 damping_ratio (1 + 2 r x1)^2 x1' (Amabili, 2018).
-    relaxation: a spring in series with a dashpot, the standard linear solid; none where left out.
-    fractional: a force between those of a spring and a dashpot; none where left out.
-    receptance: instead of mass, spring, damping_ratio and all of the above, a CSV file or {file, free_mass}.
+    Parameters
+    ----------
+    cubic_stiffness : float, default 0
+        Cubic stiffness k3 of the force k3 x1^3 [K_1/L^2]; the spring hardens, or softens if it is negative.
+    amplitude_damping : float, >= 0, default 0
+        Damping c of the force c x1^2 x1' [K_1/(omega_1 L^2)].
+    curvature : float, default 0
+        Curvature r [1/L]: spring and dashpot follow the strain x1 + r x1^2, their force is
+        x1 + 3 r x1^2 + 2 r^2 x1^3 + 2 damping_ratio (1 + 2 r x1)^2 x1' (Amabili, 2018).
+    relaxation : Relaxation, optional
+        Spring in series with a dashpot, the standard linear solid; none if left out.
+    fractional : Fractional, optional
+        Force between those of a spring and a dashpot; none if left out.
+    receptance : Receptance or str, optional
+        Frequency response instead of mass, spring, damping_ratio and all of the above: a CSV file or {file,
+        free_mass}.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.Body(cubic_stiffness=0.01, amplitude_damping=0.02)
     Body(cubic_stiffness=0.01, amplitude_damping=0.02)
@@ -260,7 +375,18 @@ class Body(ScenePart):
     receptance: Receptance | None = None
 
     def bends(self, damping_ratio: float) -> Any:
-        """What it adds to the force of spring and dashpot; empty where that is nothing."""
+        """Compute the coefficients of the nonlinear force beside spring and dashpot.
+
+        Parameters
+        ----------
+        damping_ratio : float, >= 0
+            Damping ratio along the belt [-].
+
+        Returns
+        -------
+        Bends or tuple
+            Coefficients; an empty tuple if all are zero.
+        """
         r = self.curvature
         bends = Bends(
             spring_2=3.0 * r,
@@ -272,32 +398,51 @@ class Body(ScenePart):
 
     @property
     def terms(self) -> list[str]:
-        """The keys that add something."""
+        """Keys that add something."""
         return [name for name in type(self).model_fields if getattr(self, name)]
 
 
 class _Vibration(ScenePart):
-    """A velocity that follows a waveform.
+    """Velocity that follows a waveform.
 
-    velocity_amplitude [omega_1 L], >= 0: of the velocity that the waveform is of.
+    Parameters
+    ----------
+    velocity_amplitude : float, >= 0
+        Amplitude of the velocity, which the waveform is multiplied by [omega_1 L].
     """
 
     velocity_amplitude: Annotated[NonNegative, VELOCITY]
 
     def size(self, _frequency: float) -> float:
-        """What the waveform is multiplied by."""
+        """Return the factor of the waveform, whatever the frequency.
+
+        Returns
+        -------
+        float
+            Amplitude of the velocity [omega_1 L].
+        """
         return self.velocity_amplitude
 
 
 class Slip(_Vibration):
     """Prescribed slip along the belt: -belt_speed + velocity_amplitude*waveform(frequency*tau + phase).
 
-    velocity_amplitude [omega_1 L], >= 0: of the slip velocity beside the belt's.
-    frequency [omega_1], > 0: of the oscillation.
-    phase [degrees]: the slip velocity is the waveform at frequency*tau + phase.
-    waveform: of the slip velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
-    direction [degrees]: from x1 towards x2; along x1 where left out.
+    Parameters
+    ----------
+    velocity_amplitude : float, >= 0
+        Amplitude of the slip velocity beside that of the belt [omega_1 L].
+    frequency : float, > 0
+        Frequency of the oscillation [omega_1].
+    phase : float, default 0
+        Phase of the slip velocity, which is the waveform at frequency*tau + phase [degrees].
+    waveform : str or dict, optional
+        Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order,
+        amplitude, phase}, ...]}; sine if left out.
+    direction : float, optional
+        Direction of the oscillation, from x1 towards x2 [degrees]; along x1 if left out.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
     >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
@@ -313,11 +458,21 @@ class Slip(_Vibration):
 class TransverseSlip(_Vibration):
     """Prescribed oscillation along x2, across the belt.
 
-    velocity_amplitude [omega_1 L], >= 0: of the slip velocity along x2.
-    phase [degrees]: the slip velocity is the waveform at frequency*tau + phase.
-    frequency [omega_1], > 0: only where ``slip`` is left out, whose frequency else holds for both.
-    waveform: of the slip velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
+    Parameters
+    ----------
+    velocity_amplitude : float, >= 0
+        Amplitude of the slip velocity along x2 [omega_1 L].
+    phase : float, default 0
+        Phase of the slip velocity, which is the waveform at frequency*tau + phase [degrees].
+    frequency : float, > 0, optional
+        Frequency of the oscillation [omega_1]; given only if ``slip`` is left out, whose frequency else holds
+        for both.
+    waveform : str or dict, optional
+        Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order,
+        amplitude, phase}, ...]}; sine if left out.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(belt_speed=1, transverse_slip=fl.TransverseSlip(velocity_amplitude=2, frequency=1))
     >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
@@ -330,18 +485,29 @@ class TransverseSlip(_Vibration):
 
 
 class BeltVibration(_Vibration):
-    """The belt's velocity beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
-
-    velocity_amplitude [omega_1 L], >= 0: of the belt's vibration.
-    phase [degrees]: the belt's vibration is the waveform at its frequency*tau + phase.
-    waveform: of the velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
-    direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
-    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
-    frequency [omega_1], > 0: only where nothing else has one.
+    """Vibration of the belt, beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
 
     A slider pulled through its spring over a vibrating plate, in any direction, is this scene
     (Gutowski & Leus, 2020).
 
+    Parameters
+    ----------
+    velocity_amplitude : float, >= 0
+        Amplitude of the belt's velocity beside belt_speed [omega_1 L].
+    phase : float, default 0
+        Phase of the vibration of the belt, which is the waveform at its frequency*tau + phase [degrees].
+    waveform : str or dict, default "sine"
+        Waveform of the velocity: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude,
+        phase}, ...]}.
+    direction : float, default 0
+        Direction of the vibration, from x1 towards x2, in scenes with ``transverse`` [degrees].
+    frequency_ratio : float or str, > 0, optional
+        Frequency of the vibration as a multiple of the drive's, p/q [-]; 1 if left out.
+    frequency : float, > 0, optional
+        Frequency of the vibration [omega_1]; given only if no other part of the scene has one.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> scene = scene.with_(belt_vibration=fl.BeltVibration(velocity_amplitude=2))
@@ -357,18 +523,31 @@ class BeltVibration(_Vibration):
 
 
 class NormalLoadVariation(ScenePart):
-    """The normal load as normal_load*(1 + amplitude*waveform(ratio*frequency*tau + phase)), always positive.
+    """Variation of the normal load: normal_load*(1 + amplitude*waveform(ratio*frequency*tau + phase)).
 
-    amplitude [-], >= 0: the varying share of the normal load.
-    phase [degrees]: the share is the waveform at its frequency*tau + phase.
-    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
-    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
-    frequency [omega_1], > 0: only where nothing else has one.
-    contact: ``per_load``, the stiffness and damping of bristles follow the load, as in laws per unit normal load
-    (Canudas de Wit & Tsiotras, 1999); ``constant``, they stay those of the mean load, and the load changes the limit
-    of friction alone (a spring in series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012, Popov, Popov
-    & Popov, 2017, and Mao et al., 2017).
+    The normal load must always be positive.
 
+    Parameters
+    ----------
+    amplitude : float, >= 0
+        Amplitude of the variation as a fraction of the normal load [-].
+    phase : float, default 0
+        Phase of the variation, which is the waveform at its frequency*tau + phase [degrees].
+    waveform : str or dict, default "sine"
+        Waveform of the variation: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude,
+        phase}, ...]}.
+    frequency_ratio : float or str, > 0, optional
+        Frequency of the variation as a multiple of the drive's, p/q [-]; 1 if left out.
+    contact : {"per_load", "constant"}, default "per_load"
+        Stiffness and damping of bristles. ``per_load``: they follow the load, as in laws per unit normal load
+        (Canudas de Wit & Tsiotras, 1999). ``constant``: they stay those of the mean load, and the load
+        changes the limit of friction alone (a spring in series with Coulomb friction, as in Teidelt,
+        Starcevic & Popov, 2012, Popov, Popov & Popov, 2017, and Mao et al., 2017).
+    frequency : float, > 0, optional
+        Frequency of the variation [omega_1]; given only if no other part of the scene has one.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> scene = scene.with_(normal_load_variation=fl.NormalLoadVariation(amplitude=0.3))
@@ -384,18 +563,32 @@ class NormalLoadVariation(ScenePart):
     frequency: Annotated[Positive, FREQUENCY] | None = None
 
     def size(self, _frequency: float) -> float:
-        """What the waveform is multiplied by."""
+        """Return the factor of the waveform, whatever the frequency.
+
+        Returns
+        -------
+        float
+            Amplitude as a fraction of the normal load [-].
+        """
         return self.amplitude
 
 
 class Initial(ScenePart):
-    """Where the mass starts, for scenes whose steady state depends on it.
+    """Start of the mass, for scenes whose steady state depends on it.
 
-    x [L]: position along the belt, from where the spring is undeflected.
-    velocity [omega_1 L]: along the belt.
-    x2 [L]: position across the belt.
-    velocity2 [omega_1 L]: across the belt.
+    Parameters
+    ----------
+    x : float, default 0
+        Position along the belt, from where the spring is undeflected [L].
+    velocity : float, default 0
+        Velocity along the belt [omega_1 L].
+    x2 : float, default 0
+        Position across the belt [L].
+    velocity2 : float, default 0
+        Velocity across the belt [omega_1 L].
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> motion = fl.trajectory(scene, fl.Coulomb(mu=0.4), periods=1, initial=fl.Initial(x=3, velocity=1))

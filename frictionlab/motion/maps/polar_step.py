@@ -74,7 +74,7 @@ class StepRoom(NamedTuple):
 
     They hold slip at its start and stages [6], x, e, f and forces at the stages [5], and linear systems.
 
-        corrections: of Newton's method, in all steps [1].
+    corrections: of Newton's method, in all steps [1].
     """
 
     r: Any

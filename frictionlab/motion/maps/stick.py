@@ -133,9 +133,9 @@ def _start_in_the_plane(
 
     If that force is at the limit of slip, slip grows with the square of time.
 
-        Slip then lags behind the force that turns: slip = b2 t^2 + b3 t^3 + ..., from the expansion of the
-        equation of motion. The series carries the step control beyond the singular instant. It takes friction as
-        constant, and ends before a falling law has fallen by more than the accuracy allows.
+    Slip then lags behind the force that turns: slip = b2 t^2 + b3 t^3 + ..., from the expansion of the
+    equation of motion. The series carries the step control beyond the singular instant. It takes friction as
+    constant, and ends before a falling law has fallen by more than the accuracy allows.
     """
     law, body = case.law, case.body
     pressed = normal_load(body, now)

@@ -14,20 +14,21 @@ from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.values.quantities import Floats
 
 FOR_ERRORS = "duration", "open_ends", "swing", "misfit_load", "misfit_speed"
-"""What is read from an orbit for them: its period, the distance of its end from its beginning in the norm of energy,
-the root mean square of its velocity, and by what velocities and positions differ in every panel, times its largest
-load and its largest speed."""
+"""Columns of an orbit that bound these errors: its period; the distance of its end from its start in the norm
+of energy; the root mean square of its velocity; and the difference of velocities and positions in every
+panel, times its largest load and times its largest speed."""
 _REACH = 3.0
-"""How much farther from the steady state a motion may be than what it leaves open, carried on, says."""
+"""Largest distance of a motion from the steady state, over the estimate from what the motion leaves open."""
 _SHARE = 0.3
-"""Of the distance that the error of the mean friction stands for; most of that bound is caution."""
+"""Share of the distance allowed by the error of the mean friction; most of that bound is caution."""
 _ROUNDING = 1e-14
 
 
 class Means(NamedTuple):
-    """The mean friction along x1 that a method found and the bound on its error [n].
+    """Mean friction along x1 found by a method, and the bound on its error [n].
 
-    balanced: whether the method's motions obey the equation of motion, but for errors that shrink with the tolerance.
+    balanced: whether the method's motions obey the equation of motion, except for errors that shrink with the
+    tolerance.
     """
 
     value: Floats
@@ -38,11 +39,12 @@ class Means(NamedTuple):
 def energy_errors(
     scenes: Sequence[Scene], mass: Mass, means: Means, read: Mapping[str, Floats]
 ) -> dict[str, Floats]:
-    """Bounds on the errors of the energies of orbits of these scenes, estimated; NaN where nothing is known.
+    """Estimate bounds on the errors of the energies of orbits of these scenes; NaN where nothing is known.
 
-    The velocity may be wrong by what the orbit leaves open, carried on for as long as the dashpots let a disturbance
-    live, and by what the error of the mean stands for. To it add, panel by panel, what velocities and positions
-    disagree about, and how far the energies are from closing.
+    The error of the velocity has two parts. The first is the gap that the orbit leaves open, for as long as
+    the dashpots let a disturbance live. The second is what the error of the mean stands for. To these the
+    bounds add the difference of velocities and positions, panel by panel, and the residual of the balance of
+    energies.
     """
     period, swing = read["duration"], read["swing"]
     wrong = _REACH * read["open_ends"] * _reach(scenes[0], mass, period)
@@ -81,7 +83,7 @@ def _largest_load(scene: Scene, mass: Mass) -> float:
 
 
 def _reach(scene: Scene, mass: Mass, period: Floats) -> Floats:
-    """How long a disturbance of the motion lives, between half a period and ten."""
+    """Return the life of a disturbance of the motion, between half a period and ten."""
     bodies = [(mass.damping, mass.stiffness)]
     if scene.degrees_of_freedom == 2:
         bodies.append((mass.transverse_damping, mass.transverse_stiffness))
@@ -90,6 +92,6 @@ def _reach(scene: Scene, mass: Mass, period: Floats) -> Floats:
 
 
 def _decay(rate: float, stiffness: float) -> float:
-    """The slower rate at which a free oscillation dies."""
+    """Return the slower rate at which a free oscillation decays."""
     beyond = rate**2 - stiffness
     return rate if beyond <= 0.0 else stiffness / (rate + math.sqrt(beyond))

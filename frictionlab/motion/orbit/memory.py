@@ -1,8 +1,9 @@
-"""What a law remembers along a recorded orbit, from the slip and the friction that were recorded.
+"""Memory of a law along a recorded orbit, from the recorded slip and friction.
 
-Where friction is linear in the deflection of a bristle it tells that deflection, at each sample by itself. Any
-other memory is followed along the recorded slip from panel to panel, its rate met at every node (collocation;
-Hairer, Nørsett & Wanner, 1993, II.7), until it repeats; it is told where its friction is then the recorded one.
+If friction is linear in the deflection of a bristle, it gives that deflection at each sample by itself. Any
+other memory is followed along the recorded slip from panel to panel until it repeats, with its rate met at
+every node (collocation; Hairer, Nørsett & Wanner, 1993, II.7). It is accepted if its friction is then the
+recorded one.
 """
 
 from __future__ import annotations
@@ -20,13 +21,15 @@ from frictionlab.motion.orbit.recorder import DERIVATIVE, NODES
 from frictionlab.values.quantities import Floats
 
 _SAME = 1e-6
-"""Largest difference between the friction of a memory and the recorded one, of the largest coefficient there is."""
+"""Largest difference between the friction of a memory and the recorded one, relative to the largest
+coefficient."""
 _STEEP = 1e-3
-"""Least slope of friction over deflection, of that at rest, at which friction tells it."""
+"""Least slope of friction over deflection, relative to that at rest, at which friction gives the
+deflection."""
 _CLOSED = 1e-9
-"""Change over a period at which the memory repeats."""
+"""Largest change over a period, relative to the memory, at which the memory repeats."""
 _SETTLED = 1e-11
-"""Of the memory, the last step of Newton's method."""
+"""Largest last step of Newton's method, relative to the memory."""
 _MOST_PERIODS, _MOST_STEPS = 4, 12
 
 Numbers = NDArray[np.complex128]
@@ -35,7 +38,8 @@ Numbers = NDArray[np.complex128]
 class Contact(NamedTuple):
     """Slip velocity, friction coefficient over the mean load, normal load over its mean, of any one shape.
 
-    line: whether all is along the belt. keeps_stiffness: whether the contact does while the load changes.
+    line: whether all motion is along the belt. keeps_stiffness: whether the contact keeps its stiffness while
+    the load changes.
     """
 
     slip: Numbers
@@ -45,13 +49,13 @@ class Contact(NamedTuple):
     keeps_stiffness: bool
 
     def at(self, place: Any) -> tuple[Any, Any, float]:
-        """Slip, friction and share there, as laws take them."""
+        """Return slip, friction and share of the load at a place, as laws take them."""
         w, c = complex(self.slip[place]), complex(self.friction[place])
         return (w.real, c.real, float(self.share[place])) if self.line else (w, c, float(self.share[place]))
 
 
 def deflections(law: BristleLaw, contact: Contact) -> Numbers:
-    """The deflection of a bristle by the friction it takes; NaN where that does not tell it."""
+    """Return the deflection of a bristle from its friction; NaN where friction does not give it."""
     resistance: Any = bristle_on_the_line if contact.line else bristle_in_the_plane
     found = np.full(contact.slip.shape, np.nan + 0j)
     for place in np.ndindex(contact.slip.shape):
@@ -62,7 +66,7 @@ def deflections(law: BristleLaw, contact: Contact) -> Numbers:
 
 
 def _deflection(resistance: Any, law: BristleLaw, w: Any, c: Any) -> Any:
-    """z whose friction at slip w is c, where friction is linear in z; else NaN."""
+    """Return z whose friction at slip w is c, if friction is linear in z; else NaN."""
     none = 0.0 * w
     by_axis = isinstance(w, complex) and law.planar_form() == "per-axis"
     one = none + (1.0 + 1.0j if by_axis else 1.0)
@@ -77,7 +81,7 @@ def _deflection(resistance: Any, law: BristleLaw, w: Any, c: Any) -> Any:
 
 
 def followed(law: FrictionLaw, tau: Floats, contact: Contact) -> Numbers | None:
-    """Memories along an orbit of panels [panels, nodes, count], periodic; None where they are not those recorded."""
+    """Return periodic memories along an orbit [panels, nodes, count]; None if friction does not match."""
     path, start = _Path(law, contact), _in_sliding(law, contact)
     for _ in range(_MOST_PERIODS):
         found = _one_period(path, tau, start)
@@ -90,7 +94,7 @@ def followed(law: FrictionLaw, tau: Floats, contact: Contact) -> Numbers | None:
 
 
 def _in_sliding(law: FrictionLaw, contact: Contact) -> Numbers:
-    """Memories of steady sliding at the fastest slip there is; none where nothing slips."""
+    """Return memories of steady sliding at the fastest slip of the orbit; zero if nothing slips."""
     w = contact.at(np.unravel_index(np.abs(contact.slip).argmax(), contact.slip.shape))[0]
     if w == 0.0:
         return np.zeros(law.count(), np.complex128)
@@ -100,13 +104,13 @@ def _in_sliding(law: FrictionLaw, contact: Contact) -> Numbers:
 
 
 class _Path(NamedTuple):
-    """A law along a recorded contact."""
+    """Law along a recorded contact."""
 
     law: FrictionLaw
     contact: Contact
 
     def resistance(self, place: Any, memory: Numbers) -> tuple[list[Any], Any]:
-        """The rates of all memories there, and the friction coefficient over the mean load."""
+        """Return the rates of all memories at a place, and the friction coefficient over the mean load."""
         law, (w, _, n) = self.law, self.contact.at(place)
         scalars = self.contact.line or law.memory_kind == "scalars"
         held: list[Any] = [float(each.real) if scalars else complex(each) for each in memory]
@@ -123,7 +127,7 @@ class _Path(NamedTuple):
         return rates, n * law.friction(w, held, rates)
 
     def meets(self, found: Numbers) -> bool:
-        """Whether friction at these memories is the recorded one."""
+        """Check whether friction at these memories is the recorded one."""
         most = np.nanmax(np.abs(self.contact.friction))
         return all(
             abs(self.resistance(place, found[place])[1] - self.contact.at(place)[1]) <= _SAME * most
@@ -144,7 +148,10 @@ def _one_period(path: _Path, tau: Floats, start: Numbers) -> Numbers | None:
 
 
 def _one_panel(path: _Path, panel: int, half: float, start: Numbers) -> Numbers | None:
-    """By Newton's method on the rates at all nodes but the first, where the memory is known."""
+    """Solve for the memory of a panel by Newton's method on the rates at all nodes but the first.
+
+    At the first node the memory is known. Return None if the method fails.
+    """
     width = 1 if path.contact.line else 2
     nodes, size = NODES.size - 1, len(start) * width
 

@@ -51,11 +51,12 @@ READ = (
     "energy_contact",
     *FOR_ERRORS,
 )
-"""The columns that ``read`` returns, in this order. The mean positions serve to check the mean balance:
-<x1> = N mean_friction, omega_r^2 <x2> = N mean_friction_transverse."""
+"""Columns that ``read`` returns, in this order. The mean positions serve to check the mean balance: <x1> = N
+mean_friction, omega_r^2 <x2> = N mean_friction_transverse."""
 _SUMS = "duration", "misfit_load", "misfit_speed"
 SUMMED = np.array(["energy" in name or "reversals" in name or name in _SUMS for name in READ])
-"""Of these, sums and counts over the whole of what is read; all else is a mean, a phase or an extreme."""
+"""Mask of the columns of ``READ`` that are sums and counts over the whole record; all others are means,
+phases or extremes."""
 
 
 def read_columns(
@@ -64,10 +65,13 @@ def read_columns(
     orbits: Callable[[], Orbits] | None = None,
     means: Means | None = None,
 ) -> dict[str, Floats]:
-    """Every column of ``FROM_ORBITS`` for scenes that differ in belt speed alone; NaN where one does not apply.
+    """Return every column of ``FROM_ORBITS`` for scenes that differ in belt speed alone.
 
-    means: what the method found of each scene, for the errors of energies; these are left out without it.
-    orbit: makes that of one scene, None where it has none. orbits: makes all of them at once, where that is cheaper.
+    Columns that do not apply are NaN.
+
+    means: mean friction of each scene, for the errors of energies; these are left out without it. orbit:
+    returns the orbit of one scene, None if it has none. orbits: returns all of them at once, where that is
+    cheaper.
     """
     if orbits is not None:
         found = _read_together(scenes, orbits())
@@ -90,14 +94,20 @@ def read_columns(
 
 
 def _not_there(scene: Scene) -> list[bool]:
-    """Which numbers a scene has no place for: across the belt on a line, and of loads and dashpots without a mass."""
+    """Mark the columns that do not exist for a scene.
+
+    These are columns across the belt on a line, and those of loads and dashpots without a mass.
+    """
     given = scene.degrees_of_freedom == 0
     without = ("energy_input", "energy_viscous") if given else ()
     return [name in without or (not scene.planar and "transverse" in name) for name in READ]
 
 
 def _mass(scene: Scene) -> Mass:
-    """Of a prescribed slip its mean load and frequency are all there is, and the belt is steady."""
+    """Return the numbers of a scene for kernels; of a prescribed slip only mean load and frequency are used.
+
+    The belt is then steady.
+    """
     if scene.degrees_of_freedom:
         return for_kernels(scene.mass())
     motion = scene.motion()
@@ -112,7 +122,7 @@ def _read_together(scenes: Sequence[Scene], found: Orbits) -> Floats:
 
 
 def _read_one(scene: Scene, orbit: Orbit | None) -> Floats:
-    """Of so many periods; of what is summed up or counted, the share of one."""
+    """Read one orbit of several periods; sums and counts are divided by the number of periods."""
     if orbit is None:
         return np.full(len(READ), np.nan)
     mass = _mass(scene)
@@ -140,7 +150,7 @@ class OrbitPanels(NamedTuple):
 
 @inner
 def _cut(panels: OrbitPanels, first: int, end: int) -> OrbitPanels:
-    """The panels from the first to before the end."""
+    """Return the panels from ``first`` to before ``end``."""
     return OrbitPanels(
         panels.tau[first:end],
         panels.x[first:end],
@@ -152,7 +162,10 @@ def _cut(panels: OrbitPanels, first: int, end: int) -> OrbitPanels:
 
 @njit
 def read_each(panels: OrbitPanels, ends: Any, mass: Mass, belt_speeds: Any, out: Any) -> None:
-    """Row i of ``out``: everything of ``READ`` from the orbit of belt speed i; left as it is where there is none."""
+    """Write all columns of ``READ`` for the orbit of belt speed i to row i of ``out``.
+
+    A row without an orbit stays as it is.
+    """
     first = 0
     for i in range(belt_speeds.size):
         end = ends[i]
@@ -190,7 +203,7 @@ NO_SUMS = Sums(0.0, 0j, 0j, 0j, 0j, 0.0, 0.0, 0.0, 0.0, 0.0, 0j, 0j, 0.0, 0.0, 0
 
 @inner
 def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
-    """The columns ``READ`` of one period."""
+    """Return the columns ``READ`` of one period."""
     x, v, stick = panels.x, panels.v, panels.stick
     slips = np.empty(v.shape, np.complex128)
     # Means and energies, by the Gauss-Lobatto weights of every panel.
@@ -231,14 +244,14 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
 
 @inner
 def _open_ends(x: complex, v: complex, mass: Mass) -> float:
-    """How far the end of the motion is from its beginning, by these differences, in the norm of energy."""
+    """Return the distance in the norm of energy of two states with these differences."""
     stretched = mass.stiffness * x.real**2 + mass.transverse_stiffness * x.imag**2
     return math.sqrt(stretched + v.real**2 + v.imag**2)
 
 
 @inner
 def _drop_rounding(part: Any, v: Any) -> None:
-    """Set slip velocities to zero that are the rounding of the velocity they are a difference of."""
+    """Set slip velocities to zero that are rounding of the velocity they are a difference of."""
     for panel in range(part.shape[0]):
         for node in range(part.shape[1]):
             if abs(part[panel, node]) <= SLIP_ROUNDING * abs(v[panel, node].real):
@@ -247,7 +260,7 @@ def _drop_rounding(part: Any, v: Any) -> None:
 
 @inner
 def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
-    """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
+    """Return the sums over the period, and leave the slip velocity of every node in ``slips``."""
     body, total, last = bare(planar(mass)), NO_SUMS, NODES.size - 1
     for k in range(panels.tau.shape[0]):
         stuck = 1.0 if panels.stick[k] else 0.0
@@ -259,12 +272,12 @@ def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -
 
 @inner
 def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
-    """The same; Python adds up all panels at once."""
+    """Return ``_by_panels``; Python adds up all panels at once."""
     return _by_panels(panels, mass, belt_speed, slips)
 
 
 def _integrals_in_python(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
-    """The same text, all panels at once: node by node, each an array."""
+    """Return the same sums by the same code with all panels at once: node by node, each an array."""
     if mass.varying:  # every panel has a body of its own
         return interpreted(_by_panels)(panels, mass, belt_speed, slips)
     stuck = panels.stick.astype(float)
@@ -279,7 +292,7 @@ run_as(_integrals, _integrals_in_python)
 
 @inner
 def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: float, slips: Any) -> Sums:
-    """The sums so far and those of a panel: of numbers at its nodes, or of arrays of them."""
+    """Add a panel to the sums so far, from numbers at its nodes, or from arrays of them."""
     tau, x, v, friction = parts
     half = 0.5 * (tau[NODES.size - 1] - tau[0])
     position, friction_impulse, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
@@ -335,7 +348,10 @@ def _power(force: complex, velocity: complex) -> float:
 
 @inner
 def _lead(harmonic: complex, force: complex) -> float:
-    """Phase [degrees] by which A sin(Omega tau + phase), given as its integral, leads the force; NaN without one."""
+    """Return the phase [degrees] by which A sin(Omega tau + phase) leads the force; NaN without one.
+
+    harmonic: integral that gives this sine.
+    """
     if force == 0 or harmonic == 0:
         return np.nan
     ratio = 1j * harmonic * force.conjugate()
@@ -348,13 +364,13 @@ OVERSHOOT = 0.6
 
 @inner
 def _amplitude(values: Any, stick: Any) -> float:
-    """Half the way between the extremes of the panel polynomials."""
+    """Return half the difference between the extremes of the panel polynomials."""
     return 0.5 * (_highest(values, 1.0, stick) + _highest(values, -1.0, stick))
 
 
 @inner
 def _highest(values: Any, sign: float, stick: Any) -> float:
-    """The maximum of sign * the panel polynomials, interior maxima included."""
+    """Return the maximum of sign * the panel polynomials, interior maxima included."""
     highest = -1e300
     for panel in range(values.shape[0]):
         for node in range(values.shape[1]):
@@ -379,8 +395,10 @@ def _highest(values: Any, sign: float, stick: Any) -> float:
 
 @inner
 def _sign_changes(values: Any, stick: Any, skip_stick: bool) -> int:
-    """Crossings of zero within the period, counted at interior nodes: at the ends of panels, which are events, the
-    value is zero without crossing it."""
+    """Count crossings of zero within the period, at interior nodes.
+
+    The ends of panels are events: there the value is zero without crossing it.
+    """
     changes, first, last = 0, 0.0, 0.0
     for panel in range(values.shape[0]):
         for node in range(1, values.shape[1] - 1):

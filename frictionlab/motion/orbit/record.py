@@ -1,4 +1,4 @@
-"""One period of a steady state in smooth pieces, and many of them one after another."""
+"""Record of one period of a steady state in smooth pieces, and of many orbits one after another."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from frictionlab.values.quantities import Floats
 
 @dataclass(frozen=True)
 class Orbit:
-    """One period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
+    """Period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
 
-    tau [panels, nodes] increases; x, v, friction [panels, nodes] are complex (x1 + i x2), friction being the
-    coefficient along the slip velocity (what resists), NaN in a direction of which nothing is known; stick [panels]
-    marks pieces at rest on the belt, None where the method cannot tell rest. periods: how many it holds, more than
-    one where the steps of a method keep the motion from repeating so soon.
+    tau [panels, nodes] increases. x, v, friction [panels, nodes] are complex (x1 + i x2); friction is the
+    coefficient along the slip velocity (the resistance), NaN in a direction of which nothing is known. stick
+    [panels] marks pieces at rest on the belt; it is None if the method cannot detect rest. periods: number of
+    periods of the drive in the record, more than one where the steps of a method keep the motion from
+    repeating so soon.
     """
 
     tau: Floats
@@ -31,7 +32,7 @@ class Orbit:
 
 @dataclass(frozen=True)
 class Orbits:
-    """Orbits one after another, their panels in one array each; those of orbit k end before panel ends[k]."""
+    """Orbits one after another, all panels in one array each; those of orbit k end before panel ends[k]."""
 
     tau: Floats
     x: NDArray[np.complex128]
@@ -41,14 +42,14 @@ class Orbits:
     ends: NDArray[np.int64]
 
     def one(self, k: int) -> Orbit | None:
-        """Orbit k; None where it has no panels."""
+        """Return orbit k; None if it has no panels."""
         panels = slice(self.ends[k - 1] if k else 0, self.ends[k])
         if panels.start == panels.stop:
             return None
         return Orbit(*(part[panels] for part in self._parts))
 
     def and_those_of(self, other: Orbits) -> Orbits:
-        """All orbits that either has; of each at most one has panels."""
+        """Return the orbits of both records; each orbit has panels in at most one of them."""
         if not other.ends.any():
             return self
         first, second = np.diff(self.ends, prepend=0), np.diff(other.ends, prepend=0)

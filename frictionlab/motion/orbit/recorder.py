@@ -1,6 +1,6 @@
-"""The arrays into which a kernel writes an orbit, panel by panel.
+"""Arrays into which a kernel writes an orbit, panel by panel, and calculus on such a panel.
 
-Calculus on a panel of Gauss-Lobatto nodes: derivative, interpolation, zeros.
+A panel has Gauss-Lobatto nodes. Its polynomial is differentiated and interpolated, and its zeros are found.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ run_as(differentiate_panel, _differentiate_in_python)
 
 @inner
 def interpolate(values: Any, at: float) -> float:
-    """The polynomial through the nodes (barycentric formula; Berrut & Trefethen, 2004)."""
+    """Return the polynomial through the nodes at a place (barycentric formula; Berrut & Trefethen, 2004)."""
     above, below = 0.0, 0.0
     for node in range(values.size):
         gap = at - NODES[node]
@@ -56,7 +56,7 @@ def interpolate(values: Any, at: float) -> float:
 
 @inner
 def zero_between(values: Any, low: float, high: float) -> float:
-    """A zero of the panel polynomial between two nodes of opposite sign (Illinois regula falsi)."""
+    """Return a zero of the panel polynomial between two nodes of opposite sign (Illinois regula falsi)."""
     at_low, at_high = interpolate(values, low), interpolate(values, high)
     middle, side = high, 0
     for _ in range(40):
@@ -75,7 +75,7 @@ def zero_between(values: Any, low: float, high: float) -> float:
 
 
 def interpolation_weights(at: Floats) -> Floats:
-    """Rows of weights that interpolate from the nodes to each place in [-1, 1]."""
+    """Return rows of weights that interpolate from the nodes to each place in [-1, 1]."""
     gaps = at[:, None] - NODES[None, :]
     hit = gaps == 0.0
     weights = BARYCENTRIC / np.where(hit, 1.0, gaps)
@@ -96,7 +96,7 @@ class Track(NamedTuple):
 
 @inner
 def track_of(room: int) -> Track:
-    """An empty track for at most ``room`` panels; with 0 nothing is recorded."""
+    """Return an empty track for at most ``room`` panels; with 0 nothing is recorded."""
     nodes = NODES.size
     return Track(
         np.empty((room, nodes)),
@@ -110,7 +110,7 @@ def track_of(room: int) -> Track:
 
 @inner
 def grown(track: Track, room: int) -> Track:
-    """The same track with more room."""
+    """Return the same track with more room."""
     larger = track_of(room)
     for panel in range(track.filled[0]):
         larger.stick[panel] = track.stick[panel]
@@ -123,10 +123,11 @@ def grown(track: Track, room: int) -> Track:
 
 
 def panel_writer(state_at: Any) -> Any:
-    """``note_panel(track, tau, h, stick, *given)`` for a kernel function ``state_at(part, *given)`` of one motion.
+    """Return ``note_panel(track, tau, h, stick, *given)`` for a kernel function ``state_at(part, *given)``.
 
-    It writes the panel that begins at tau and lasts h, if there is room for it; state_at gives position, velocity and
-    friction coefficient a while ``part`` after the beginning. (numba caches no kernel that is handed a function.)
+    It writes the panel that begins at tau and lasts h, if there is room for it. state_at returns position,
+    velocity and friction coefficient at the time ``part`` after the beginning. (numba caches no kernel that
+    is handed a function.)
     """
 
     @inner

@@ -1,7 +1,4 @@
-"""One period of a steady state at equally spaced times.
-
-Fourier's parts of a recorded orbit: its velocity and its friction, harmonic by harmonic.
-"""
+"""Samples of one period of a steady state at equal times, and harmonics of its velocity and friction."""
 
 from __future__ import annotations
 
@@ -22,15 +19,17 @@ from frictionlab.values.quantities import EPSILON, Floats
 
 _POWERS = np.arange(1, PER_PANEL + 1)
 _PRIMITIVE: Floats = np.linalg.inv(np.vander(NODES, increasing=True)) / _POWERS[:, None]
-"""Coefficients, of the powers of a place from 1 on, of the integral of the polynomial through values at the nodes."""
+"""Coefficients of the integral of the polynomial through values at the nodes, for powers of the place from 1
+on."""
 
 
 class Samples(NamedTuple):
-    """One period of a steady state at n equally spaced times [nondimensional, scales of ``scene``].
+    """Period of a steady state at n equally spaced times [nondimensional, scales of ``scene``].
 
-    friction [-] is the force that resists slip over the mean normal load; load [K_1 L] is the force that drives the
-    mass, at a jump that after it; slip is the velocity against the belt; normal_load [K_1 L] with its variation; work
-    [K_1 L^2] what friction has done on the body since the beginning. memory [count, n]: what the law remembers.
+    friction [-] is the force that resists slip over the mean normal load. load [K_1 L] is the force that
+    drives the mass; at a jump it is the one after the jump. slip is the velocity against the belt.
+    normal_load [K_1 L] includes its variation. work [K_1 L^2] is the work of friction on the body since the
+    beginning. memory [count, n] is the memory of the law.
     """
 
     tau: Floats
@@ -50,7 +49,10 @@ class Samples(NamedTuple):
     directed: bool  # whether memories have a direction
 
     def columns(self) -> dict[str, Floats]:
-        """As columns by name; each memory as ``memory_<k>``, with a direction also ``memory_<k>_transverse``."""
+        """Return columns by name, each memory as ``memory_<k>``.
+
+        A memory with a direction also has ``memory_<k>_transverse``.
+        """
         found = self._asdict()
         memory, directed = found.pop("memory"), found.pop("directed")
         for k, values in enumerate(memory):
@@ -61,24 +63,27 @@ class Samples(NamedTuple):
 
 
 def memory_column(k: int, across: bool = False) -> str:
-    """The name of the column of the k-th memory."""
+    """Return the name of the column of the k-th memory."""
     return f"memory_{k}_transverse" if across else f"memory_{k}"
 
 
 def memory_columns(law: FrictionLaw) -> list[str]:
-    """The names of its columns of memory."""
+    """Return the names of the columns of a law's memory."""
     directions = (False,) if law.memory_kind == "scalars" else (False, True)
     return [memory_column(k, across) for k in range(law.count()) for across in directions]
 
 
 def sample(orbit: Orbit, scene: Scene, law: FrictionLaw, n: int) -> Samples:
-    """The orbit at n equally spaced times tau = 0 ... its period (end not included)."""
+    """Sample the orbit at n equally spaced times tau = 0 ... its period (end not included)."""
     step = np.ptp(orbit.tau) / orbit.periods / n
     return sample_at(orbit, scene, law, orbit.tau[0, 0] + np.arange(n, dtype=np.float64) * step)
 
 
 def sample_at(orbit: Orbit, scene: Scene, law: FrictionLaw, times: Floats) -> Samples:
-    """The orbit at these times [1/omega_1], within those it is recorded at; law: in the scales of the scene."""
+    """Sample the orbit at these times [1/omega_1], within its recorded times.
+
+    law: in the scales of the scene.
+    """
     panels = np.clip(np.searchsorted(orbit.tau[:, 0], times, side="right") - 1, 0, len(orbit.tau) - 1)
     start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
     places = (2.0 * times - start - end) / (end - start)
@@ -99,19 +104,19 @@ def sample_at(orbit: Orbit, scene: Scene, law: FrictionLaw, times: Floats) -> Sa
 
 
 def _slip(scene: Scene, v: NDArray[np.complex128], times: Floats) -> NDArray[np.complex128]:
-    """The velocity against the belt; of a prescribed slip the oscillation is that of the body."""
+    """Return the velocity against the belt; under a prescribed slip all oscillation is that of the body."""
     belts = scene.signals().belt if scene.degrees_of_freedom else (Signal(), Signal())
     return np.asarray(v - scene.belt_speed - belts[0](times) - 1j * belts[1](times))
 
 
 def work_of(orbit: Orbit, scene: Scene) -> float:
-    """What friction does on the body over the whole record [K_1 L^2]."""
+    """Return the work of friction on the body over the whole record [K_1 L^2]."""
     assert scene.normal_load is not None
     return float(_work(orbit, scene.normal_load, np.array([len(orbit.tau) - 1]), np.array([1.0]))[0])
 
 
 def _work(orbit: Orbit, normal_load: float, panels: NDArray[np.int64], places: Floats) -> Floats:
-    """What friction has done on the body from the beginning of the orbit to places in these panels."""
+    """Return the work of friction on the body from the beginning of the orbit to places in these panels."""
     power = orbit.friction.real * orbit.v.real
     # across the belt friction may not be known, where nothing moves
     power = -normal_load * (power + np.where(orbit.v.imag == 0.0, 0.0, orbit.friction.imag * orbit.v.imag))
@@ -125,9 +130,9 @@ def _work(orbit: Orbit, normal_load: float, panels: NDArray[np.int64], places: F
 def _memory(
     orbit: Orbit, scene: Scene, law: FrictionLaw, contact: Contact, at: tuple[Floats, NDArray[np.int64]]
 ) -> NDArray[np.complex128]:
-    """What the law remembers at samples [count, n], NaN where the record does not tell it.
+    """Return the memory of the law at samples [count, n], NaN where the record does not determine it.
 
-    at: the weights that interpolate each sample from the nodes of its panel, and the panels.
+    at: weights that interpolate each sample from the nodes of its panel, and the panels.
     """
     weights, panels = at
     if law.count() == 0:
@@ -150,25 +155,26 @@ def _memory(
 _TO_LEGENDRE: Floats = np.linalg.inv(np.polynomial.legendre.legvander(NODES, PER_PANEL - 1)).astype(
     np.float64
 )
-"""From values at the nodes of a panel to the coefficients of the Legendre polynomials."""
+"""Matrix from values at the nodes of a panel to the coefficients of the Legendre polynomials."""
 _STEEP = 12.0
-"""Half the phase that a harmonic turns through in a panel, from which on the recurrence upwards is stable."""
+"""Half the phase of a harmonic in a panel, from which on the recurrence upwards is stable."""
 _GAUSS, _SHARES = np.polynomial.legendre.leggauss(32)
 _LEGENDRE_GAUSS: Floats = np.polynomial.legendre.legvander(_GAUSS, PER_PANEL - 1) * _SHARES[:, None]
 _AT_ONCE = 20_000
-"""Panels times harmonics, for memory."""
+"""Largest product of panels and harmonics that are computed at once, which limits memory."""
 _ROUNDING = 64.0 * EPSILON
-"""Of a harmonic of the velocity, relative to the largest: of smaller ones the phase is not known."""
+"""Harmonic of the velocity, relative to the largest, below which rounding leaves no phase."""
 
 
 class HarmonicParts(NamedTuple):
-    """Harmonics 0 ... H along one direction, one entry each: of the velocity, and of the friction that resists.
+    """Harmonics 0 ... H of velocity and of resisting friction along one direction, one entry each.
 
-    The harmonic k of a function is amplitude*sin(k theta + phase), phases in degrees, theta the phase of the load
-    along x1 (of ``frequency*tau`` where there is none). Friction is the coefficient as it acts against the mass, its
-    in_phase part being that in phase with the velocity harmonic, which it damps where positive, and in_quadrature
-    that which leads it by 90 degrees: inertia where positive, stiffness where negative. Of k = 0 the amplitude is the
-    mean with its sign; where a harmonic of the velocity is rounding, phases and parts against it are NaN.
+    The harmonic k of a function is amplitude*sin(k theta + phase), phases in degrees. theta is the phase of
+    the load along x1, or of ``frequency*tau`` without a load. Friction is the coefficient as it acts against
+    the mass. Its in_phase part is in phase with the velocity harmonic, which it damps where positive. Its
+    in_quadrature part leads the velocity by 90 degrees: inertia where positive, stiffness where negative. For
+    k = 0 the amplitude is the mean with its sign. If a harmonic of the velocity is rounding, phases and parts
+    against it are NaN.
     """
 
     harmonic: NDArray[np.int64]
@@ -181,10 +187,11 @@ class HarmonicParts(NamedTuple):
 
 
 def harmonic_parts(scene: Scene, orbit: Orbit, harmonics: int, across: bool = False) -> HarmonicParts:
-    """The harmonics 0 ... ``harmonics`` of an orbit of a scene, of the drive's frequency; undriven, of its own.
+    """Return the harmonics 0 ... ``harmonics`` of an orbit; undriven, those of its own frequency.
 
-    Every panel is the polynomial through its nodes, integrated exactly against sine and cosine however fast they turn
-    (Filon). across: of x2' and of friction along x2, phases against the load along x1 still.
+    Every panel is the polynomial through its nodes, integrated exactly against sine and cosine however fast
+    they turn (Filon). across: harmonics of x2' and of friction along x2; phases are still relative to the
+    load along x1.
     """
     frequency, lead = _clock(scene, orbit)
     k = np.arange(harmonics + 1, dtype=np.int64)
@@ -207,7 +214,10 @@ def harmonic_parts(scene: Scene, orbit: Orbit, harmonics: int, across: bool = Fa
 
 
 def harmonic_columns(scene: Scene, orbit: Orbit, harmonics: int) -> dict[str, Floats]:
-    """The harmonics of an orbit as columns of a table; across the belt by the same names after ``transverse_``."""
+    """Return the harmonics of an orbit as columns of a table.
+
+    Columns of motion across the belt have the same names after ``transverse_``.
+    """
     along = harmonic_parts(scene, orbit, harmonics)._asdict()
     if not scene.planar:
         return along
@@ -217,7 +227,7 @@ def harmonic_columns(scene: Scene, orbit: Orbit, harmonics: int) -> dict[str, Fl
 
 
 def _clock(scene: Scene, orbit: Orbit) -> tuple[float, float]:
-    """The circular frequency of harmonic 1, and the phase of the load along x1 at tau = 0 [rad]."""
+    """Return the circular frequency of harmonic 1, and the phase of the load along x1 at tau = 0 [rad]."""
     if scene.undriven:
         return 2.0 * math.pi * orbit.periods / float(orbit.tau[-1, -1] - orbit.tau[0, 0]), 0.0
     force = scene.mass().force if scene.degrees_of_freedom else 0j
@@ -225,7 +235,10 @@ def _clock(scene: Scene, orbit: Orbit) -> tuple[float, float]:
 
 
 def phasors_of_panels(tau: Floats, values: Floats, frequencies: Floats) -> NDArray[np.complex128]:
-    """Of each frequency the F whose Im(F exp(i frequency tau)) is the part of the values; i times the mean at 0."""
+    """Return for each frequency the F whose Im(F exp(i frequency tau)) is that part of the values.
+
+    For frequency 0 it is i times the mean.
+    """
     start, end = tau[:, 0], tau[:, -1]
     half, middle = 0.5 * (end - start), 0.5 * (start + end)
     legendre = half[:, None] * (values @ _TO_LEGENDRE.T)
@@ -237,7 +250,7 @@ def phasors_of_panels(tau: Floats, values: Floats, frequencies: Floats) -> NDArr
 def _integrals_against(
     frequencies: Floats, half: Floats, middle: Floats, legendre: Floats
 ) -> NDArray[np.complex128]:
-    """Of the polynomials of all panels against exp(-i frequency tau), one for each frequency."""
+    """Integrate the polynomials of all panels against exp(-i frequency tau), for each frequency."""
     turns = np.exp(-1j * np.outer(middle, frequencies))
     return np.asarray(
         np.einsum("pkn,pn,pk->k", _moments(np.outer(half, frequencies)), legendre, turns, optimize=True)
@@ -245,7 +258,7 @@ def _integrals_against(
 
 
 def _moments(turned: Floats) -> NDArray[np.complex128]:
-    """Integrals over [-1, 1] of every Legendre polynomial P_n(s) times exp(-i turned s): 2 (-i)^n j_n(turned).
+    """Integrate every Legendre polynomial P_n(s) times exp(-i turned s) over [-1, 1]: 2 (-i)^n j_n(turned).
 
     Source: DLMF 18.17.19; upwards by j_(n+1) = (2 n + 1)/x j_n - j_(n-1), DLMF 10.51.1.
     """

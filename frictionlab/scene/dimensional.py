@@ -1,13 +1,15 @@
 # ruff: noqa: N815 - a key ends in its unit, and N stands for newton
-"""A scene in SI units and its conversion to nondimensional numbers (Sulollari, van Dalen & Cabboi, Eq. 2).
+"""Scene in SI units and its conversion to nondimensional numbers (Sulollari, van Dalen & Cabboi, Eq. 2).
 
-Each part of a scene is stated once, nondimensional (``parts.py``): its SI form has the same keys, with the unit
-behind those of numbers that have a dimension, the same limits and the same rules. Only springs, dashpots, mass,
-weight and length, of which the nondimensional numbers are made, have keys of their own here.
+Each part of a scene is stated once, nondimensional (``parts.py``). Its SI form has the same keys, with the
+unit behind those of numbers that have a dimension, the same limits and the same rules. Only springs,
+dashpots, mass, weight and length, from which the nondimensional numbers are made, have keys of their own
+here.
 """
 
 from __future__ import annotations
 
+import inspect
 import math
 import re
 from collections.abc import Iterator, Mapping
@@ -16,7 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.scene.as_written import AsWritten, changed
+from frictionlab.scene.as_written import AsWritten, changed, unit_of
 from frictionlab.scene.parts import (
     BY_TABLE,
     BeltVibration,
@@ -57,17 +59,28 @@ STANDARD_GRAVITY = 9.81
 
 
 class PartInSI(AsWritten):
-    """A part of a scene in SI units; nondimensional: what it becomes."""
+    """Part of a scene in SI units; ``nondimensional`` is the part that it becomes."""
 
     nondimensional: ClassVar[type[ScenePart]]
 
     @classmethod
     def key(cls, name: str) -> str:
-        """Under which the part has the value of this nondimensional name."""
+        """Return the key under which the part has the value of a nondimensional name."""
         return key_in_si(cls.nondimensional, name)
 
     def scaled(self, units: Units) -> dict[str, Any]:
-        """The values given, as those of the nondimensional part."""
+        """Return the values given, as those of the nondimensional part.
+
+        Parameters
+        ----------
+        units : Units
+            Units of the scene's nondimensional numbers.
+
+        Returns
+        -------
+        dict of str to Any
+            Values by nondimensional name.
+        """
         found: dict[str, Any] = {}
         kinds = dimensions(self.nondimensional)
         for name in self.nondimensional.model_fields:
@@ -81,17 +94,24 @@ class PartInSI(AsWritten):
 
 
 def key_in_si(part: type[ScenePart], name: str) -> str:
-    """The key of a value in SI units by its nondimensional name: a number with a dimension ends in its unit."""
+    """Return the key in SI units of a nondimensional name: that of a number with a dimension ends in its unit."""
     dimension = dimensions(part).get(name)
     return name if dimension is None else f"{name}_{SUFFIXES[dimension]}"
 
 
 class _Shaken(PartInSI):
-    """What shakes with one velocity, displacement or acceleration.
+    """Oscillation given by its velocity, its displacement or its acceleration.
 
-    velocity_amplitude_m_per_s [m/s], >= 0: of its velocity; or instead, of a sine,
-    displacement_amplitude_m [m], >= 0: of its displacement, the velocity's over the circular frequency; or instead
-    acceleration_amplitude_m_per_s2 [m/s^2], >= 0: of its acceleration, the velocity's times it.
+    Parameters
+    ----------
+    velocity_amplitude_m_per_s : float, >= 0, optional
+        Amplitude of the velocity [m/s].
+    displacement_amplitude_m : float, >= 0, optional
+        Amplitude of the displacement [m]: that of the velocity over the circular frequency. Given instead of the
+        velocity's, for a sine alone.
+    acceleration_amplitude_m_per_s2 : float, >= 0, optional
+        Amplitude of the acceleration [m/s^2]: that of the velocity times the circular frequency. Given instead
+        of the velocity's, for a sine alone.
     """
 
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SWINGS,)
@@ -109,9 +129,9 @@ class _Shaken(PartInSI):
 
 
 def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI, **inside: Any) -> Any:
-    """The SI form of a part that has no keys of its own in SI units, but for those of its base.
+    """Return the SI form of a part that has no keys of its own in SI units, except those of its base.
 
-    inside: the SI forms of the parts inside it.
+    ``inside`` holds the SI forms of the parts inside it.
     """
     kinds = get_type_hints(part, include_extras=True) | {name: kind | None for name, kind in inside.items()}
     fields: dict[str, Any] = {
@@ -120,28 +140,51 @@ def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI,
         if (key := key_in_si(part, name)) not in base.model_fields
     }
     name = f"Dimensional{part.__name__}"
-    said = _documented(part, name, example)
-    made = create_model(name, __base__=base, __module__=__name__, __doc__=said, **fields)
+    docstring = _documented(part, name, example, base, inside)
+    made = create_model(name, __base__=base, __module__=__name__, __doc__=docstring, **fields)
     made.nondimensional, made.alternatives = part, part.alternatives
     return made
 
 
-def _documented(part: type[ScenePart], name: str, example: str) -> str:
-    """The docstring of a part with the keys and units of its SI form."""
-    paragraphs = [each for each in (part.__doc__ or "").split("\n\n") if not each.lstrip().startswith(">>> ")]
-    text = "\n\n".join(paragraphs).rstrip().replace(".", ", in SI units.", 1)
-    for field, dimension in dimensions(part).items():
-        key, unit = key_in_si(part, field), SUFFIXES[dimension].replace("_per_", "/").replace("_", " ")
-        text = re.sub(rf"(?m)^( *){field} \[[^]]*\]", rf"\1{key} [{unit}]", text)
-    return f"{text}\n\n    >>> import frictionlab as fl\n    >>> fl.{name}({example})\n    {name}({example})\n    "
+def _documented(
+    part: type[ScenePart], name: str, example: str, base: type[PartInSI], inside: Mapping[str, Any]
+) -> str:
+    """Return the docstring of a part with the keys, units and types of its SI form."""
+    text = inspect.cleandoc(part.__doc__ or "").partition("\n\nExamples\n")[0]
+    text = text.replace(".", ", in SI units.", 1)
+    for field in dimensions(part):
+        key = key_in_si(part, field)
+        text = text.replace(f"``{field}``", f"``{key}``")
+        text = re.sub(rf"(?ms)^{field} : (.*?)\[[^]]*\]", rf"{key} : \1[{unit_of(key)}]", text, count=1)
+    for field in inside:
+        text = re.sub(rf"(?m)^{field} : ", f"{field} : Dimensional", text)
+    _, _, others = inspect.cleandoc(base.__doc__ or "").partition("\n" + SWINGS[1])
+    if others:  # the same velocity, or in its place what the base adds
+        entry = rf"(?m)^({SWINGS[0]} : .*)((?:\n    .*)+)"
+        text = re.sub(entry, lambda found: f"{found[1]}, optional{found[2]}\n{SWINGS[1]}{others}", text)
+    lines = (
+        "Examples",
+        "--------",
+        ">>> import frictionlab as fl",
+        f">>> fl.{name}({example})",
+        f"{name}({example})",
+    )
+    return "\n".join([text, "", *lines])
 
 
 class DimensionalFractional(PartInSI):
-    """A force coefficient*D^order x1 beside spring and dashpot, in SI units.
+    """Force coefficient*D^order x1 beside spring and dashpot of the body, in SI units.
 
-    coefficient_N_sq_per_m [N s^order/m], > 0: of the derivative, (i omega)^order of a sine (Weyl).
-    order [-], 0 < order <= 1: of the derivative.
+    Parameters
+    ----------
+    coefficient_N_sq_per_m : float, > 0
+        Coefficient of the derivative [N s^order/m]; the derivative of a sine is (i omega)^order times it
+        (Weyl).
+    order : float, > 0 and <= 1
+        Order of the derivative [-].
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.DimensionalFractional(coefficient_N_sq_per_m=2, order=0.5)
     DimensionalFractional(coefficient_N_sq_per_m=2, order=0.5)
@@ -153,19 +196,40 @@ class DimensionalFractional(PartInSI):
     order: Order
 
     def scaled(self, units: Units) -> dict[str, Any]:
-        """The values given, as those of the nondimensional part."""
+        """Return the values given, as those of the nondimensional part.
+
+        Parameters
+        ----------
+        units : Units
+            Units of the scene's nondimensional numbers.
+
+        Returns
+        -------
+        dict of str to Any
+            Values by nondimensional name.
+        """
         unit = units.force / units.length * units.time**self.order
         return {"coefficient": self.coefficient_N_sq_per_m / unit, "order": self.order}
 
 
 class DimensionalReceptance(PartInSI):
-    """What a linear body answers, measured or computed by others, in place of mass, spring and dashpot, in SI units.
+    """Frequency response of a linear body, in place of its mass, spring and dashpot, in SI units.
 
-    file: a CSV file with columns frequency [rad/s], real and imaginary [m/N] of x1 over force, from frequency 0;
-    their names may end in their units, frequency_rad_per_s, real_m_per_N and imaginary_m_per_N.
-    free_mass_kg [kg], > 0: above the last frequency x1 over force is -1/(free mass times frequency^2).
-    digest: found where it is left out, of what the file says; a file that says something else is then refused.
+    It is measured or computed by others.
 
+    Parameters
+    ----------
+    file : str
+        CSV file with columns frequency [rad/s], real and imaginary [m/N]: parts of x1 over force, from
+        frequency 0. Their names may end in their units: frequency_rad_per_s, real_m_per_N and
+        imaginary_m_per_N.
+    free_mass_kg : float, > 0, optional
+        Mass [kg]: above the last frequency x1 over force is -1/(free mass times frequency^2).
+    digest : str, default ""
+        Digest of the contents of the file; found if left out. A file with other contents is then refused.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.DimensionalReceptance(file="no_such_file.csv", free_mass="2 kg")
     Traceback (most recent call last):
@@ -180,8 +244,8 @@ class DimensionalReceptance(PartInSI):
 
     @model_validator(mode="before")
     @classmethod
-    def _file_alone(cls, given: Any) -> Any:
-        return file_alone(given)
+    def _file_alone(cls, values: Any) -> Any:
+        return file_alone(values)
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:
@@ -189,11 +253,28 @@ class DimensionalReceptance(PartInSI):
         return self
 
     def body(self) -> TabulatedBody:
-        """The body of the file, in SI units."""
+        """Return the body of the file, in SI units.
+
+        Returns
+        -------
+        TabulatedBody
+            Frequencies [rad/s] with x1 over force [m/N].
+        """
         return read_receptance(self.file, self.free_mass_kg, in_si=True)
 
     def scaled(self, units: Units) -> dict[str, Any]:
-        """The same file, and the units it is in."""
+        """Return the same file, and the units it is in.
+
+        Parameters
+        ----------
+        units : Units
+            Units of the scene's nondimensional numbers.
+
+        Returns
+        -------
+        dict of str to Any
+            Values by nondimensional name.
+        """
         return super().scaled(units) | {
             "frequency_unit": units.time,
             "receptance_unit": units.force / units.length,
@@ -233,14 +314,24 @@ else:
 
 
 class DimensionalTransverse(PartInSI):
-    """The motion of the same mass along x2, across the belt.
+    """Motion of the same mass along x2, across the belt, in SI units.
 
-    stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt; or instead
-    natural_frequency_rad_per_s [rad/s], > 0: of the mass on it.
-    damping_N_s_per_m [N s/m], >= 0: C_2, of the dashpot across the belt; or instead
-    damping_ratio [-], >= 0: of the motion across it.
-    load: the force across the belt; none where left out.
+    Parameters
+    ----------
+    stiffness_N_per_m : float, > 0, optional
+        Stiffness K_2 of the spring across the belt [N/m]. Exactly one is given: it or
+        ``natural_frequency_rad_per_s``.
+    natural_frequency_rad_per_s : float, > 0, optional
+        Natural frequency of the mass on that spring [rad/s].
+    damping_N_s_per_m : float, >= 0, optional
+        Damping C_2 of the dashpot across the belt [N s/m]. Exactly one is given: it or ``damping_ratio``.
+    damping_ratio : float, >= 0, optional
+        Damping ratio of the motion across the belt [-].
+    load : DimensionalLoad, optional
+        Force across the belt; no force if left out.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
     DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
@@ -257,27 +348,65 @@ class DimensionalTransverse(PartInSI):
 
 
 class Dimensional(AsWritten):
-    """A body on a moving belt, shaken, in SI units.
+    """Body on a moving belt, shaken, in SI units.
 
-    mass_kg [kg], > 0: M.
-    stiffness_N_per_m [N/m], > 0: K_1, of the spring along the belt; or instead
-    natural_frequency_rad_per_s [rad/s], > 0: omega_1, of the mass on it.
-    damping_N_s_per_m [N s/m], >= 0: C_1, of the dashpot along the belt; or instead
-    damping_ratio [-], >= 0: of the motion along it.
-    length_m [m], > 0: L, the length scale of the nondimensional columns; no result in SI units depends on it. Left
-    out, it is the largest amplitude without friction, of each load and of the belt's vibration as a sine of its size;
-    normal load over stiffness where nothing shakes.
-    gravity_m_per_s2 [m/s^2], > 0: the normal load is the weight; 9.81 where normal_load_N is left out.
-    normal_load_N [N], > 0: the normal load, instead of gravity_m_per_s2.
-    belt_speed_m_per_s [m/s]: V_b.
-
-    ``slip`` and ``transverse_slip`` prescribe a motion in place of mass, spring, dashpot and loads; normal_load_N is
-    then 1 where it is left out. ``body.receptance`` stands for mass, spring and dashpot, too; K_1 is then that of the
-    body at rest, M the free mass, where there is none K_1 over the square of the drive's frequency.
     Every number may be text with a unit, its key without one: ``belt_speed="2 mm/s"``, ``frequency="60 Hz"``.
-    Leave ``transverse`` out for one degree of freedom.
-    Raises WrongValues with every mistake in the values.
+    ``slip`` and ``transverse_slip`` prescribe a motion in place of mass, spring, dashpot and loads.
+    ``body.receptance`` stands for mass, spring and dashpot, too; K_1 is then that of the body at rest, M the
+    free mass, or if there is none K_1 over the square of the drive's frequency.
 
+    Parameters
+    ----------
+    mass_kg : float, > 0, optional
+        Mass M [kg]; required unless ``slip``, ``transverse_slip`` or ``body.receptance`` is given.
+    stiffness_N_per_m : float, > 0, optional
+        Stiffness K_1 of the spring along the belt [N/m]. With a mass exactly one is given: it or
+        ``natural_frequency_rad_per_s``.
+    natural_frequency_rad_per_s : float, > 0, optional
+        Natural frequency omega_1 of the mass on that spring [rad/s].
+    damping_N_s_per_m : float, >= 0, optional
+        Damping C_1 of the dashpot along the belt [N s/m]. With a mass exactly one is given: it or
+        ``damping_ratio``.
+    damping_ratio : float, >= 0, optional
+        Damping ratio of the motion along the belt [-].
+    length_m : float, > 0, optional
+        Length scale L of the nondimensional columns [m]; no result in SI units depends on it. If left out it
+        is the largest amplitude without friction, of each load and of the belt's vibration as a sine of its
+        size; normal load over stiffness if nothing shakes.
+    gravity_m_per_s2 : float, > 0, optional
+        Gravity [m/s^2]: the normal load is the weight. 9.81 if ``normal_load_N`` is left out.
+    normal_load_N : float, > 0, optional
+        Normal load [N], instead of ``gravity_m_per_s2``; 1 if left out with a prescribed slip.
+    belt_speed_m_per_s : float
+        Belt speed V_b [m/s].
+    drive : DimensionalDrive, optional
+        Force along the belt.
+    transverse : DimensionalTransverse, optional
+        Motion across the belt; one degree of freedom if left out.
+    body : DimensionalBody, optional
+        Nonlinear and viscoelastic parts of the body, or its frequency response.
+    slip : DimensionalSlip, optional
+        Prescribed slip along the belt.
+    transverse_slip : DimensionalTransverseSlip, optional
+        Prescribed slip across the belt.
+    belt_vibration : DimensionalBeltVibration, optional
+        Vibration of the belt.
+    normal_load_variation : DimensionalNormalLoadVariation, optional
+        Variation of the normal load in time.
+    initial : DimensionalInitial, optional
+        Start of the mass; at rest on the belt with the spring undeflected if left out.
+
+    Raises
+    ------
+    WrongValues
+        If values make no scene; the message has every mistake.
+
+    References
+    ----------
+    Source: Sulollari, van Dalen & Cabboi, Eq. 2.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m", "length": "1 mm"}
     >>> drive = fl.DimensionalDrive(amplitude="20 N", frequency_rad_per_s=20)
@@ -286,8 +415,6 @@ class Dimensional(AsWritten):
     (0.1, 24.525, 2.5)
     >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).si["mean_friction_N"], 4)
     0.0332
-
-    Source: Sulollari, van Dalen & Cabboi, Eq. 2.
     """
 
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = (("mass_kg",), SPRING, DASHPOT)
@@ -310,14 +437,33 @@ class Dimensional(AsWritten):
     initial: DimensionalInitial | None = None
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Dimensional:
-        """The same body with other values: ``with_({"drive.frequency": "60 Hz"}, mass="2 kg")``; None leaves one out.
+        """Return the same body with other values.
 
+        Parameters
+        ----------
+        changes : mapping of str to Any, optional
+            New values by dotted path: ``{"drive.frequency": "60 Hz"}``. None leaves a value out.
+        **others : Any
+            New values by name: ``mass="2 kg"``. None leaves a value out.
+
+        Returns
+        -------
+        Dimensional
+            Body with the new values.
+
+        Raises
+        ------
+        WrongValues
+            If the values make no scene.
+        TypeError
+            If ``changes`` is no mapping.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m"}
         >>> fl.Dimensional(**body, belt_speed="50 mm/s").with_(belt_speed="6 cm/s", damping=None, damping_ratio=0.1)
         Dimensional(mass_kg=1, stiffness_N_per_m=400, damping_ratio=0.1, belt_speed_m_per_s=0.06)
-
-        Raises WrongValues, TypeError.
         """
         return cast(Dimensional, changed(self, given_values(self), changes, others))
 
@@ -329,8 +475,8 @@ class Dimensional(AsWritten):
     def _one_scene(self) -> Dimensional:
         both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
-        told = self._of_slip() if self.is_prescribed else [*self._of_table(), *problems_of_parts(self)]
-        problems = [*twice, *told]
+        others = self._of_slip() if self.is_prescribed else [*self._of_table(), *problems_of_parts(self)]
+        problems = [*twice, *others]
         if not problems:
             self._fill()
             problems = [*self._out_of_range()]
@@ -351,7 +497,7 @@ class Dimensional(AsWritten):
         return [*replaced_by_table(self, own), *(missing if self.normal_load_N is None else [])]
 
     def _fill(self) -> None:
-        """Put in what was left out: it counts as not given where the body is changed."""
+        """Put in values that were left out: they count as not given when the body is changed."""
         if self.normal_load_N is None and self.gravity_m_per_s2 is None:
             vars(self).update(
                 {"normal_load_N": 1.0} if self.is_prescribed else {"gravity_m_per_s2": STANDARD_GRAVITY}
@@ -361,7 +507,7 @@ class Dimensional(AsWritten):
                 vars(self)["length_m"] = own_length(self)
 
     def _out_of_range(self) -> Iterator[str]:
-        """Values in wrong units whose nondimensional numbers overflow or vanish."""
+        """Yield a message if values, in wrong units, have nondimensional numbers that overflow or vanish."""
         try:
             numbers = [*self.scales[:3], *_numbers(self.scaled())]
         except (ZeroDivisionError, OverflowError, TypeError):
@@ -371,7 +517,7 @@ class Dimensional(AsWritten):
 
     @property
     def scales(self) -> Units:
-        """L, 1/omega_1, K_1 L and M; of a prescribed slip L, 1/omega and the normal load."""
+        """Units L, 1/omega_1, K_1 L and M; those of a prescribed slip are L, 1/omega and the normal load."""
         length, mass = self.length_m or math.nan, self.mass_kg
         if self.table is not None:
             stiffness = 1.0 / self.table.values[0].real
@@ -383,26 +529,26 @@ class Dimensional(AsWritten):
 
     @property
     def is_prescribed(self) -> bool:
-        """Whether the slip is prescribed and there is no body."""
+        """True if the slip is prescribed and there is no body."""
         return self.slip is not None or self.transverse_slip is not None
 
     @property
     def table(self) -> TabulatedBody | None:
-        """The body by its receptance, in SI units; None of any other."""
+        """Body by its receptance, in SI units; None of any other."""
         receptance = getattr(self.body, BY_TABLE, None)
         return receptance.body() if receptance is not None else None
 
     @property
     def frequency(self) -> float:
-        """Of the drive, or of what else gives it [rad/s]; 1 where nothing does."""
+        """Frequency of the drive, or of the part that gives it [rad/s]; 1 if no part does."""
         slips = self.slip, self.transverse_slip
         parts: tuple[Any, ...] = (self.drive, *slips, self.belt_vibration, self.normal_load_variation)
         found = (part.frequency_rad_per_s for part in parts if part is not None)
-        return next((float(each) for each in found if each is not None), 1.0)
+        return next((float(frequency) for frequency in found if frequency is not None), 1.0)
 
     @property
     def load(self) -> float:
-        """The normal load [N]."""
+        """Normal load [N]."""
         if self.normal_load_N is not None:
             return self.normal_load_N
         assert self.gravity_m_per_s2 is not None
@@ -410,7 +556,13 @@ class Dimensional(AsWritten):
         return self.mass_kg * self.gravity_m_per_s2
 
     def scaled(self) -> dict[str, Any]:
-        """The nondimensional scene as plain nested values."""
+        """Return the nondimensional scene as plain nested values.
+
+        Returns
+        -------
+        dict of str to Any
+            Values by name, from which ``Scene`` is made.
+        """
         scales, mass, across = self.scales, self.mass_kg, self.transverse
         found: dict[str, Any] = {
             name: part.scaled(scales) for name, part in self if isinstance(part, PartInSI)

@@ -1,4 +1,4 @@
-"""The mass, its springs and dashpots, its loads and the belt it slides on: none, one or two degrees of freedom.
+"""Mass, its springs and dashpots, its loads and the belt it slides on: none, one or two degrees of freedom.
 
 Everything is nondimensional, in the scales of Sulollari, van Dalen & Cabboi, Eq. 2: time 1/omega_1, a length
 L, force K_1 L, velocity omega_1 L, energy K_1 L^2. The equations of motion are their Eq. 1,
@@ -6,10 +6,10 @@ L, force K_1 L, velocity omega_1 L, energy K_1 L^2. The equations of motion are 
     x1'' + 2 damping_ratio x1' + x1 + normal_load T1 = load along x1,
     x2'' + 2 damping_ratio_2 omega_r x2' + omega_r^2 x2 + normal_load T2 = load along x2,
 
-with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2'), or against a belt that vibrates
-and under a normal load that changes where the scene says so; ``body`` adds what is not linear, or remembers.
+with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2'). The belt vibrates and
+the normal load changes if the scene says so; ``body`` adds what is not linear, or remembers.
 
-What shakes a scene, from its parts; read once of all scenes that differ in belt speed alone.
+Excitations of a scene are made from its parts, once for all scenes that differ in belt speed alone.
 """
 
 from __future__ import annotations
@@ -50,8 +50,11 @@ from frictionlab.values.quantities import Finite, NonNegative, Positive, given_v
 
 
 class Shaking(NamedTuple):
-    """Everything that changes in time, its harmonics at the frequency of the drive along x1 and x2, and what kernels
-    are told of what changes otherwise than as one sine; nothing where nothing does."""
+    """Excitations of a scene: everything that changes in time.
+
+    ``load`` and ``belt`` are the harmonics along x1 and x2 at the frequency of the drive. ``varying`` holds,
+    for kernels, the excitations other than one sine; it is empty if there are none.
+    """
 
     signals: Signals
     load: tuple[complex, complex]
@@ -68,24 +71,25 @@ def shaking_by(
     normal_load: float,
     is_harmonic: bool,
 ) -> Shaking:
+    """Return the excitations of a scene with these parts, frequency ``omega`` and common period."""
     (drive, load, slip, across), (belt, normal) = parts, others
     moved = _pair(slip or belt, across, omega)
     variation = _signal(normal, omega).scaled(normal_load)
     signals = Signals(FULL_TURN * periods / omega, _pair(drive, load, omega), moved, variation)
     first, second, third, fourth = (
-        each.harmonic(omega, signals.period) for each in (*signals.load, *signals.belt)
+        signal.harmonic(omega, signals.period) for signal in (*signals.load, *signals.belt)
     )
     varying = () if is_harmonic else varying_of(signals, omega, keeps_stiffness(normal))
     return Shaking(signals, (first, second), (third, fourth), varying)
 
 
 def keeps_stiffness(part: NormalLoadVariation | None) -> bool:
-    """Whether bristles do while the normal load changes."""
+    """Check whether bristles keep their stiffness while the normal load changes."""
     return part is not None and part.amplitude > 0.0 and part.contact == "constant"
 
 
 def _signal(part: Any, omega: float) -> Signal:
-    """Its waveform, as large as it says; omega: the frequency of the drive."""
+    """Return the signal of a part, its waveform times its size; ``omega`` is the frequency of the drive."""
     if part is None:
         return Signal()
     ratio = getattr(part, "frequency_ratio", None) or 1.0
@@ -93,13 +97,16 @@ def _signal(part: Any, omega: float) -> Signal:
 
 
 def _pair(part: Any, across: Any, omega: float) -> tuple[Signal, Signal]:
-    """A part and one across the belt: along x1, and along x2."""
+    """Return the signals along x1 and x2 of a part along the belt and of one across it."""
     along, aside = _turned(_signal(part, omega), (part and part.direction) or 0.0)
     return along, aside if across is None else _signal(across, omega)
 
 
 def _turned(signal: Signal, direction: float) -> tuple[Signal, Signal]:
-    """Its parts along x1 and x2, where it acts at an angle [degrees] to x1; right angles to the last digit."""
+    """Return the components along x1 and x2 of a signal at an angle [degrees] to x1.
+
+    Right angles are exact to the last digit.
+    """
     quarters, rest = divmod(direction, 90.0)
     along, across = (
         (1.0, 0.0) if rest == 0.0 else (math.cos(math.radians(rest)), math.sin(math.radians(rest)))
@@ -125,28 +132,63 @@ __all__ = [
     "TransverseSlip",
     "with_values",
 ]
-"""A scene and what it is made of."""
+"""Names of the scene and its parts."""
 
 
 class Scene(ScenePart):
-    """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
-
-    damping_ratio [-], >= 0: beta_1, along the belt; may exceed 1.
-    normal_load [K_1 L], > 0: gamma^2, friction force per friction coefficient; 1 where left out with prescribed slip.
-    belt_speed [omega_1 L]: v_b.
+    """Body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
     Nondimensional: times in 1/omega_1, lengths in L, forces in K_1 L, for a mass on a spring K_1.
-    Leave ``transverse`` out for one degree of freedom, ``drive`` for a scene that nothing drives, or that
-    ``belt_vibration`` or ``normal_load_variation`` shakes. ``dimensional`` gives all of it in SI units instead; every
-    other field is then filled from it (Eq. 2).
-    Raises WrongValues with every mistake in the values, TypeError for values without names.
+    ``dimensional`` gives all of it in SI units instead; every other field is then filled from it (Eq. 2).
 
+    Parameters
+    ----------
+    damping_ratio : float, >= 0, optional
+        Damping ratio beta_1 along the belt [-]; may exceed 1. Required unless the slip is prescribed or
+        ``body`` has a receptance.
+    normal_load : float, > 0, optional
+        Normal load gamma^2 [K_1 L]: friction force per friction coefficient. Required unless the slip is
+        prescribed, 1 then.
+    belt_speed : float
+        Belt speed v_b [omega_1 L].
+    drive : Drive, optional
+        Force along the belt. Left out of a scene that nothing drives, or that ``belt_vibration`` or
+        ``normal_load_variation`` shakes.
+    transverse : Transverse, optional
+        Motion across the belt; one degree of freedom if left out.
+    body : Body, optional
+        Nonlinear and viscoelastic parts of the body, or its frequency response; a linear spring and dashpot
+        if left out.
+    slip : Slip, optional
+        Prescribed slip along the belt, instead of ``damping_ratio`` and ``drive``.
+    transverse_slip : TransverseSlip, optional
+        Prescribed slip across the belt.
+    belt_vibration : BeltVibration, optional
+        Vibration of the belt; steady if left out.
+    normal_load_variation : NormalLoadVariation, optional
+        Variation of the normal load in time; constant if left out.
+    initial : Initial, optional
+        Start of the mass; at rest on the belt with the spring undeflected if left out.
+    dimensional : Dimensional, optional
+        Scene in SI units, instead of all other fields.
+
+    Raises
+    ------
+    WrongValues
+        If values make no scene; the message has every mistake.
+    TypeError
+        If values are given without names.
+
+    References
+    ----------
+    Source: Sulollari, van Dalen & Cabboi, Eqs. 1 and 2.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> scene.degrees_of_freedom, scene.with_(belt_speed=2).belt_speed
     (1, 2.0)
-
-    Source: Sulollari, van Dalen & Cabboi, Eqs. 1 and 2.
     """
 
     damping_ratio: NonNegative | None = None
@@ -200,52 +242,52 @@ class Scene(ScenePart):
         return [*missing, *left, *problems_of_parts(self)]
 
     def _shown(self) -> dict[str, Any]:
-        """``dimensional`` alone where that gives all the rest."""
+        """Return the values that are shown: ``dimensional`` alone if it gives all others."""
         return super()._shown() if self.dimensional is None else {"dimensional": self.dimensional}
 
     @property
     def degrees_of_freedom(self) -> int:
-        """0 for a prescribed slip, 1 along the belt alone, 2 in the plane."""
+        """Number of degrees of freedom: 0 for a prescribed slip, 1 along the belt alone, 2 in the plane."""
         if self.slip is not None or self.transverse_slip is not None:
             return 0
         return 1 if self.transverse is None else 2
 
     @property
     def planar(self) -> bool:
-        """Whether there is an x2, across the belt."""
+        """True if there is an x2, across the belt."""
         if self.degrees_of_freedom > 0:
             return self.transverse is not None
         return self.transverse_slip is not None or bool(self.slip and self.slip.direction)
 
     @property
     def undriven(self) -> bool:
-        """Whether no load drives the mass: the period of its motion is then unknown."""
+        """True if no load drives the mass: the period of its motion is then unknown."""
         shaken = self.drive or self.belt_vibration or self.normal_load_variation
         return self.degrees_of_freedom > 0 and shaken is None
 
     @property
     def body_terms(self) -> list[str]:
-        """The keys of ``body`` that add something to its linear spring and dashpot."""
+        """Keys of ``body`` that add something to its linear spring and dashpot."""
         return [] if self.body is None else self.body.terms
 
     @property
     def bends(self) -> bool:
-        """Whether springs and dashpots of the body are not linear."""
+        """True if springs and dashpots of the body are not linear."""
         return not set(BENDING).isdisjoint(self.body_terms)
 
     @property
     def remembers(self) -> bool:
-        """Whether the body is known by its frequency response alone, as its force hangs on its motion long before."""
+        """True if the body is known by its frequency response alone: its force depends on its motion long before."""
         return not {*REMEMBERING, BY_TABLE}.isdisjoint(self.body_terms)
 
     @property
     def start(self) -> Initial:
-        """``initial``; where it is left out, at rest on the belt with the spring undeflected."""
+        """Start of the mass, ``initial``; if it is left out, at rest on the belt with the spring undeflected."""
         return self.initial or Initial(velocity=self.belt_speed)
 
     @property
     def frequency(self) -> float:
-        """Of the drive, of the prescribed slip or of what else gives it [omega_1]; 1 for an undriven scene."""
+        """Frequency of the drive, of the prescribed slip or of another part [omega_1]; 1 for an undriven scene."""
         slips = self.slip or self.transverse_slip
         for part in (self.drive, slips, self.belt_vibration, self.normal_load_variation):
             if part is not None and part.frequency is not None:
@@ -254,12 +296,12 @@ class Scene(ScenePart):
 
     @property
     def periods(self) -> int:
-        """The periods of the drive after which everything that changes in time has repeated."""
+        """Number of periods of the drive after which everything that changes in time has repeated."""
         return periods_of(self)
 
     @property
     def is_harmonic(self) -> bool:
-        """Whether loads, or a prescribed slip, are sines of one frequency and nothing else changes in time."""
+        """True if loads, or a prescribed slip, are sines of one frequency and nothing else changes in time."""
         load = self.transverse.load if self.transverse is not None else None
         shapes = [
             part.waveform
@@ -275,16 +317,22 @@ class Scene(ScenePart):
 
     @property
     def constant_contact(self) -> bool:
-        """Whether bristles keep their stiffness while the normal load changes."""
+        """True if bristles keep their stiffness while the normal load changes."""
         return keeps_stiffness(self.normal_load_variation)
 
     def signals(self) -> Signals:
-        """Everything that changes in time."""
+        """Return everything that changes in time.
+
+        Returns
+        -------
+        Signals
+            Load, vibration of the belt or oscillation of the slip, and variation of the normal load.
+        """
         return self._shaking.signals
 
     @property
     def _shaking(self) -> Shaking:
-        """What shakes: read once of all scenes that differ in belt speed alone."""
+        """Excitations, made once for all scenes that differ in belt speed alone."""
         assert self.normal_load is not None
         load = self.transverse.load if self.transverse is not None else None
         parts = self.drive, load, self.slip, self.transverse_slip
@@ -293,14 +341,20 @@ class Scene(ScenePart):
 
     @property
     def load_along_belt_only(self) -> bool:
-        """Whether nothing shakes across the belt: with isotropic friction x2 then decays from every start."""
+        """True if nothing shakes across the belt: with isotropic friction x2 then decays from every start."""
         if self.degrees_of_freedom == 1:
             return True
         signals = self.signals()
         return signals.load[1] == Signal() and signals.belt[1] == Signal()
 
     def mass(self) -> Mass:
-        """The numbers of a free scene."""
+        """Return the numbers of a free scene for kernels.
+
+        Returns
+        -------
+        Mass
+            Coefficients of the equations of motion and phasors of the loads.
+        """
         assert self.normal_load is not None
         damping_ratio = self.damping_ratio or 0.0
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
@@ -321,17 +375,35 @@ class Scene(ScenePart):
         return with_free_motion(mass) if mass.bends else mass
 
     def motion(self) -> Motion:
-        """The numbers of a prescribed slip."""
+        """Return the numbers of a prescribed slip for kernels.
+
+        Returns
+        -------
+        Motion
+            Normal load, frequency and phasors of the slip velocity.
+        """
         assert self.normal_load is not None
         shaking = self._shaking
         return Motion(self.normal_load, self.frequency, *shaking.belt, shaking.varying)
 
     def values(self) -> dict[str, float | str]:
-        """Every value of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
+        """Return every value of the scene by its dotted path.
+
+        Returns
+        -------
+        dict of str to float or str
+            Values by path, without the leading ``scene.``; SI numbers included.
+        """
         return _flat(self.model_dump(exclude_none=True))
 
     def given(self) -> dict[str, Any]:
-        """Nested plain values from which the same scene can be built; in SI units if the scene was given in them."""
+        """Return values from which the same scene can be made.
+
+        Returns
+        -------
+        dict of str to Any
+            Nested plain values; in SI units if the scene was given in them.
+        """
         tree = self.model_dump(exclude_none=True)
         if self.initial is not None:
             # A scene without x2 would refuse the defaults for x2.
@@ -343,32 +415,70 @@ class Scene(ScenePart):
         return {"dimensional": tree["dimensional"]}
 
     def given_values(self, defaults: bool = True) -> dict[str, float | str]:
-        """Those of ``values`` that were given: only the SI ones where the scene is in SI units.
+        """Return those of ``values`` that were given: only the SI ones if the scene is in SI units.
 
-        defaults: what has its default, too.
+        Parameters
+        ----------
+        defaults : bool, default True
+            True to include values that are the default.
+
+        Returns
+        -------
+        dict of str to float or str
+            Values by dotted path.
         """
         kept = "" if self.dimensional is None else "dimensional."
-        told = _flat(self.model_dump(exclude_none=True, exclude_defaults=not defaults))
-        return {path: value for path, value in told.items() if path.startswith(kept)}
+        values = _flat(self.model_dump(exclude_none=True, exclude_defaults=not defaults))
+        return {path: value for path, value in values.items() if path.startswith(kept)}
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Scene:
-        """The same scene with other values: ``with_({"drive.frequency": 2}, normal_load=3)``; None leaves one out.
+        """Return the same scene with other values.
 
         A scene in SI units is changed in them: ``with_({"dimensional.mass": "2 kg"})``.
 
+        Parameters
+        ----------
+        changes : mapping of str to Any, optional
+            New values by dotted path: ``{"drive.frequency": 2}``. None leaves a value out.
+        **others : Any
+            New values by name: ``normal_load=3``. None leaves a value out.
+
+        Returns
+        -------
+        Scene
+            Scene with the new values.
+
+        Raises
+        ------
+        WrongValues
+            If the values make no scene.
+        TypeError
+            If ``changes`` is no mapping.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5)
         >>> scene.with_(belt_speed=2, drive=fl.Drive(amplitude=3, frequency=1))
         Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=Drive(amplitude=3, frequency=1))
-
-        Raises WrongValues, TypeError.
         """
         given = given_values(self)
         tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}
         return cast(Scene, changed(self, tree, changes, others))
 
     def checked(self) -> Scene:
-        """The same scene, made again from what it was given: raises WrongValues where its values make no scene."""
+        """Return the same scene, made again from the values it was given.
+
+        Returns
+        -------
+        Scene
+            Equal scene.
+
+        Raises
+        ------
+        WrongValues
+            If its values make no scene.
+        """
         given = given_values(self)
         if given.get("dimensional") is None:
             return type(self)(**given)
@@ -379,7 +489,18 @@ class Scene(ScenePart):
         )
 
     def at(self, belt_speed: float) -> Scene:
-        """The same scene at another belt speed: [m/s] where the scene is given in SI units."""
+        """Return the same scene at another belt speed.
+
+        Parameters
+        ----------
+        belt_speed : float
+            Belt speed [omega_1 L]; [m/s] if the scene is given in SI units.
+
+        Returns
+        -------
+        Scene
+            Scene with that belt speed.
+        """
         if self.dimensional is None:
             return self.model_copy(update={"belt_speed": belt_speed})
         there = self.dimensional.model_copy(update={"belt_speed_m_per_s": belt_speed})
@@ -388,7 +509,7 @@ class Scene(ScenePart):
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, float | str]:
-    """Nested values by dotted path; a sum of harmonics as one text."""
+    """Return nested values by dotted path; a sum of harmonics as one text."""
     flat: dict[str, float | str] = {}
     for key, value in tree.items():
         if not isinstance(value, dict):

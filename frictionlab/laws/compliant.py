@@ -15,7 +15,7 @@ from frictionlab.values.quantities import document
 Stiffness = Annotated[Positive, Dimension(length=-1)]
 document(
     Stiffness,
-    """Bristle stiffness > 0 per unit normal load [1/m in a scene given in SI units, else 1/L], as parameter.
+    """Bristle stiffness > 0 per unit normal load [1/m in a scene given in SI units, else 1/L], as parameter of a law.
 
     Examples
     --------

@@ -1,6 +1,7 @@
-"""The numbers that laws, scenes and studies hold: finite and real; strings and booleans are refused.
+"""Numbers that laws, scenes and studies hold: finite and real; strings and booleans are refused.
 
-Values and parameters as one would type them in Python: 10 for 10.0, ``float | None`` for a checked number.
+Values and parameters are shown as one would type them in Python: 10 for 10.0, ``float | None`` for a checked
+number.
 """
 
 from __future__ import annotations
@@ -31,14 +32,14 @@ from frictionlab.values.validation import unnamed, wrong_values
 
 
 def typed(value: Any) -> str:
-    """A value as one would type it."""
+    """Return a value as one would type it."""
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e16:
         return str(int(value)) if value or math.copysign(1.0, value) > 0.0 else "-0.0"
     return repr(value)
 
 
 class _Type(str):
-    """The name of a type; in a signature without quotes."""
+    """Name of a type; in a signature without quotes."""
 
     __slots__ = ()
     __repr__ = str.__str__
@@ -47,11 +48,11 @@ class _Type(str):
 def keywords(
     fields: Iterable[tuple[str, FieldInfo]], others: Iterable[inspect.Parameter]
 ) -> inspect.Signature:
-    """The signature of what takes these fields by name: plain types and defaults, without how each is checked.
+    """Return the signature of a class that takes these fields by name: plain types and defaults, without checks.
 
-    others: parameters of which those by name follow.
+    Those of ``others`` that are keywords follow the fields.
     """
-    beside = [each for each in others if each.kind is inspect.Parameter.KEYWORD_ONLY]
+    beside = [other for other in others if other.kind is inspect.Parameter.KEYWORD_ONLY]
     return inspect.Signature([*(_keyword(name, field) for name, field in fields), *beside])
 
 
@@ -62,7 +63,7 @@ def _keyword(name: str, field: FieldInfo) -> inspect.Parameter:
 
 
 def _type_text(annotation: Any) -> str:
-    """A type without the checks written beside it; what is made of text or mappings as these."""
+    """Return a type without the checks written beside it; records made of text or mappings as these types."""
     origin = get_origin(annotation)
     if origin is Annotated:
         return _type_text(get_args(annotation)[0])
@@ -84,7 +85,7 @@ else:
 
 
 class Written(float):
-    """A number that was written as text with a unit: it is in SI units, and has that text.
+    """Number that was written as text with a unit: it is in SI units, and has that text.
 
     Arithmetic makes a plain number of it.
     """
@@ -93,19 +94,19 @@ class Written(float):
     si: str
 
     def __new__(cls, number: float, text: str, si: str) -> Written:
-        """The number in this SI unit, and the text, such as ``2 mm/s``."""
+        """Make the number in this SI unit, with its text, such as ``2 mm/s``."""
         made = super().__new__(cls, number)
         made.text, made.si = text, si
         return made
 
     # a float is made again of itself alone
     def __getnewargs__(self) -> tuple[float, str, str]:  # type: ignore[override]
-        """Of which it is made again in another process."""
+        """Return the values from which the number is made again in another process."""
         return float(self), self.text, self.si
 
     @property
     def unit(self) -> str:
-        """That of the text."""
+        """Unit in the text."""
         return self.text.partition(" ")[2]
 
 
@@ -129,10 +130,12 @@ def document(kind: Any, text: str) -> None:
 Finite = Annotated[float, Field(allow_inf_nan=False), WrapValidator(_a_number)]
 document(
     Finite,
-    """Any real number, as the parameter of a law; without a dimension.
+    """Real number, as the parameter of a law; without a dimension.
 
     Text, booleans, NaN and infinities raise WrongValues.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Tilted(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -146,8 +149,10 @@ document(
 NonNegative = Annotated[float, Field(allow_inf_nan=False, ge=0), WrapValidator(_a_number)]
 document(
     NonNegative,
-    """A number of at least 0, as the parameter of a law; without a dimension. Smaller ones raise WrongValues.
+    """Number of at least 0, as the parameter of a law; without a dimension. Smaller ones raise WrongValues.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Lubricated(fl.SlidingLaw):
     ...     mu: fl.NonNegative = 0
@@ -161,8 +166,10 @@ document(
 Positive = Annotated[float, Field(allow_inf_nan=False, gt=0), WrapValidator(_a_number)]
 document(
     Positive,
-    """A number above 0, as the parameter of a law; without a dimension. Others raise WrongValues.
+    """Number above 0, as the parameter of a law; without a dimension. Others raise WrongValues.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Rough(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -176,7 +183,7 @@ document(
 
 
 def at_least_one(name: str, value: object) -> int:
-    """The value of a parameter of this name as a whole number. Raises ValueError."""
+    """Return the value of this parameter as a whole number. Raises ValueError if it is none, or below 1."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"{name} must be a whole number of at least 1, got {python_text(value)}")
     return int(value)
@@ -184,10 +191,22 @@ def at_least_one(name: str, value: object) -> int:
 
 @dataclass(frozen=True, repr=False)
 class Dimension:
-    """Physical dimension of a number as powers of force, length and time; written beside its limits in an annotation.
+    """Physical dimension of a number as powers of force, length and time.
 
-    It gives the unit of the number where a scene is given in SI units. A number without it is dimensionless.
+    It is written beside the number's limits in an annotation and gives the unit of the number if a scene is
+    in SI units. A number without it is dimensionless.
 
+    Parameters
+    ----------
+    force : int, default 0
+        Power of force.
+    length : int, default 0
+        Power of length.
+    time : int, default 0
+        Power of time.
+
+    Examples
+    --------
     >>> from typing import Annotated
     >>> import frictionlab as fl
     >>> Acceleration = Annotated[fl.Positive, fl.Dimension(length=1, time=-2)]
@@ -200,7 +219,7 @@ class Dimension:
     time: int = 0
 
     def __repr__(self) -> str:
-        """What one would type to make it again."""
+        """Return the call that makes it again."""
         powers = ", ".join(f"{name}={power}" for name, power in vars(self).items() if power)
         return f"Dimension({powers})"
 
@@ -208,8 +227,10 @@ class Dimension:
 Speed = Annotated[Positive, Dimension(length=1, time=-1)]
 document(
     Speed,
-    """A speed > 0 [m/s in a scene given in SI units, else omega_1 L], as the parameter of a law.
+    """Speed > 0 [m/s in a scene given in SI units, else omega_1 L], as the parameter of a law.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Falling(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -223,8 +244,10 @@ document(
 PerSpeed = Annotated[NonNegative, Dimension(length=-1, time=1)]
 document(
     PerSpeed,
-    """A coefficient >= 0 per speed [s/m in a scene given in SI units, else 1/(omega_1 L)], as the parameter of a law.
+    """Coefficient >= 0 per speed [s/m in a scene given in SI units, else 1/(omega_1 L)], as parameter of a law.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> class Viscous(fl.SlidingLaw):
     ...     mu: fl.Positive
@@ -238,7 +261,7 @@ document(
 
 
 Floats = NDArray[np.float64]
-"""An array of real numbers of any shape."""
+"""Array of real numbers of any shape."""
 
 
 EPSILON = 2.0**-52
@@ -246,16 +269,17 @@ EPSILON = 2.0**-52
 
 
 class _Listed(_ModelType):
-    """The type of records: ``dir``, ``help`` and completion tell what a record adds to those of pydantic."""
+    """Type of records: ``dir``, ``help`` and completion show what a record adds to those of pydantic."""
 
     def __dir__(cls) -> list[str]:  # noqa: N805 - of a class
         return [name for name in super().__dir__() if not hasattr(BaseModel, name) and name[:2] != "__"]
 
 
 class Record(BaseModel, metaclass=_Listed):
-    """A frozen record that refuses keys it does not know, shown as one would type it.
+    """Frozen record that refuses keys it does not know, shown as one would type it.
 
-    Made in Python it raises WrongValues, which tells mistakes as a study does; TypeError for values without names.
+    If made in Python it raises WrongValues, with mistakes worded as in a study; TypeError for values without
+    names.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -263,7 +287,10 @@ class Record(BaseModel, metaclass=_Listed):
     if not TYPE_CHECKING:  # type checkers and pydantic take the signature from the fields
 
         def __init__(self, /, *without_names: Any, **values: Any) -> None:
-            """Raises WrongValues with every mistake in the values, TypeError for values without names."""
+            """Make the record.
+
+            Raises WrongValues with every mistake in the values, TypeError for values without names.
+            """
             if without_names:
                 raise unnamed(type(self), without_names)
             try:
@@ -281,18 +308,18 @@ class Record(BaseModel, metaclass=_Listed):
 
     @classmethod
     def _in_order(cls) -> list[str]:
-        """The names of its values in the order in which they are shown: choices among words last."""
+        """Return the names of its values in the order in which they are shown: choices among words last."""
         fields = cls.model_fields
         return sorted(fields, key=lambda name: isinstance(fields[name].default, str))
 
     def _shown(self) -> dict[str, Any]:
-        """Values of which it can be made again, without those it has anyway."""
+        """Return values from which it can be made again, without those that it has by default."""
         fields, held = type(self).model_fields, dict(self)
         given = {name: held[name] for name in self._in_order() if held[name] != fields[name].default}
         return {name: value for name, value in given.items() if self._differs_without(name, given)}
 
     def _differs_without(self, name: str, given: dict[str, Any]) -> bool:
-        """Whether the record that is made without this value is another, or none."""
+        """Check whether the record that is made without this value is another, or none."""
         if type(self).model_fields[name].is_required():
             return True
         try:
@@ -301,18 +328,18 @@ class Record(BaseModel, metaclass=_Listed):
             return True
 
     def __repr__(self) -> str:
-        """What one would type to make it again."""
+        """Return the call that makes it again."""
         values = ", ".join(f"{name}={typed(value)}" for name, value in self.__repr_args__())
         return f"{type(self).__name__}({values})"
 
     __str__ = __repr__
 
     def __repr_args__(self) -> list[tuple[str, Any]]:
-        """The same for rich and other printers."""
+        """Return the values for rich and other printers."""
         return [*self._shown().items()]
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Raises AttributeError where the record is frozen: it is made again to be changed."""
+        """Set a value. Raises AttributeError if the record is frozen: it is made again to be changed."""
         if not self.model_config.get("frozen"):
             super().__setattr__(name, value)
             return
@@ -321,7 +348,7 @@ class Record(BaseModel, metaclass=_Listed):
         raise AttributeError(f"a {type(self).__name__} cannot be changed: make {hint}")
 
     def __dir__(self) -> list[str]:
-        """Its values, and what its class adds to that of pydantic."""
+        """Return the names of its values, and of what its class adds to that of pydantic."""
         return [*type(self).model_fields, *dir(type(self))]
 
 
@@ -329,28 +356,28 @@ _RecordT = TypeVar("_RecordT", bound=Record)
 
 
 def rebuilt(record: _RecordT) -> _RecordT:
-    """The record if it holds what making it again from its values gives, else that.
+    """Return the record if making it again from its values gives an equal one, else the record made again.
 
-    Raises WrongValues where ``model_copy`` put in what the record refuses.
+    Raises WrongValues if ``model_copy`` put in a value that the record refuses.
     """
     made = type(record)(**given_values(record))
     return record if _exactly(made) == _exactly(record) else made
 
 
 def _exactly(record: Record) -> str:
-    """Everything a record holds, numbers with their types."""
+    """Return everything a record holds as text, numbers with their types."""
     return repr({name: _exactly(value) if isinstance(value, Record) else value for name, value in record})
 
 
 def given_values(record: Record) -> dict[str, Any]:
-    """Nested plain values that were given for a record, whether or not they are valid."""
+    """Return nested plain values that were given for a record, whether or not they are valid."""
     held = {name: value for name, value in vars(record).items() if name in record.model_fields_set}
     return {name: given_values(value) if isinstance(value, Record) else value for name, value in held.items()}
 
 
 @cache
 def dimensions(record: type[Record]) -> dict[str, Dimension]:
-    """The dimension of every field of a record that has one."""
+    """Return the dimension of every field of a record that has one."""
     found = {
         name: _dimension(field.annotation, field.metadata) for name, field in record.model_fields.items()
     }
@@ -358,7 +385,7 @@ def dimensions(record: type[Record]) -> dict[str, Dimension]:
 
 
 def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
-    """The ``Dimension`` in the annotation of a type, or of one of the alternatives of an optional type."""
+    """Return the ``Dimension`` in the annotation of a type, or of one of the alternatives of an optional type."""
     for mark in metadata:
         if isinstance(mark, Dimension):
             return mark

@@ -18,6 +18,7 @@ from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, along_the_belt, largest_modulus
+from frictionlab.methods.shooting.leaps import Leaper
 from frictionlab.methods.shooting.long_mean import LongMean
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Initial, Scene
@@ -39,6 +40,10 @@ POINTS_KEPT = 100
 """States that are kept of a motion that does not repeat."""
 ONE_BRANCH = 1e-3
 """How far apart, over their size, orbits of neighbouring belt speeds are taken for one that the belt speed moves."""
+LONGEST_LEAP = 1_000_000_000
+"""Periods of one leap."""
+CLOSED_FROM = 0.05
+"""Step of Newton's method, over the size of a state, from which an orbit is closed beside a motion."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
 DECAYS, CLIMBS = 30.0, 2.0
@@ -344,14 +349,23 @@ class FollowedStarts:
         """To its end, or until it is sure to end on the first known orbit of one period."""
         self._starts.append(start)
         periods = self.carry(self._problem.state_at(self._scene.belt_speed, start))
-        self._fewest = min(self._fewest, periods)
+        if periods > 1:  # a start on the orbit itself is there at once
+            self._fewest = min(self._fewest, periods)
 
     def carry(self, state: Floats) -> int:
         """The same from a state, that of another belt speed for one; for how many periods it was followed."""
         first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
         known = None if first is None else first.known
-        way = self._problem.carried(self._scene.belt_speed, state, self._patience, known)
+        soon = min(self._patience, FEWEST)
+        way = self._problem.carried(self._scene.belt_speed, state, soon, known)
         self.seconds += way.seconds
+        if way.period == 0 and len(way.means) == soon < self._patience:
+            led, periods = self._led(way.state)
+            if led is not None:
+                self.reached.append(led)
+                return soon + periods
+            way = self._problem.carried(self._scene.belt_speed, way.state, self._patience - soon, known)
+            self.seconds += way.seconds
         beside = (one for one in self.known if ends_on(way.state, way.period, one))
         found = first if way.period == ARRIVED else next(beside, None)
         if found is None:
@@ -362,6 +376,32 @@ class FollowedStarts:
                 self.known = [*self.known, found]
         self.reached.append(found)
         return len(way.means)
+
+    def _led(self, state: Floats) -> tuple[Attractor | None, int]:
+        """Return the closed orbit of one period to which leaps lead from a state, or None, and the periods."""
+        leaper = Leaper(self._problem, self._scene.belt_speed, state, LONGEST_LEAP)
+        set_out, tried = state, math.inf
+        while (newton := leaper.leap()) is not None:
+            size = float(np.linalg.norm(leaper.state))
+            left = float(np.linalg.norm(newton))
+            if left < CLOSED_FROM * size and left < 0.3 * tried:
+                tried = left
+                self._close_beside(leaper.state)
+            for one in self.known:
+                if one.period != 1 or one.curve is None or not one.known.gap > 0.0:
+                    continue
+                away, before = (float(np.linalg.norm(at - one.known.state)) for at in (leaper.state, set_out))
+                if away <= max(0.1 * before, 1e-3 * size) and leaper.ends_on(one.known):
+                    return one, leaper.periods
+        return None, 0
+
+    def _close_beside(self, state: Floats) -> None:
+        """Add the closed orbit of one period beside a state to those known."""
+        curve, seconds = self._problem.close([self._scene], state)
+        self.seconds += seconds
+        found = closed_orbit(curve, curve.closed.mean) if curve.closed.found[0] else None
+        if found is not None and not any(found.agrees(one) for one in self.known):
+            self.known = [*self.known, found]
 
     def lead_to(self, ends: dict[int, Attractor]) -> None:
         """Enter where the motions at these places of ``reached`` lead, as longer following has shown."""

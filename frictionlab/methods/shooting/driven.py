@@ -264,7 +264,7 @@ class SteadyStates:
             if resonant and self.status[i] == "failed":
                 self._add(i, UNBOUNDED)
             periods = carried_for(self.scenes[i], self.problem.mass.normal_load * friction_at_rest(law))
-            if periods > MOST and self.status[i] != "ok":
+            if periods > MOST and self.status[i] != "ok" and can_hold(scene, law):
                 self._add(i, CARRIED.format(periods * self.problem.common))
             if self.status[i] == "ok" and not error <= tolerance and self.error_kind[i] != STATISTICAL:
                 said = f"the error is above the tolerance {tolerance:.1e}"

@@ -1,0 +1,148 @@
+"""Many periods of a motion at once, where it changes slowly from one to the next.
+
+About a state s the map of a period is s + G + M d, M its derivative. Repeated H times that affine map leads to
+s + (1 + M + ... + M^(H-1)) G, whatever the multipliers. True maps there and on the way show how far off it is, and
+choose H: with H = 1 it is the motion itself. So the number of maps hangs on how often the motion bends, not on how
+many periods it takes.
+
+Licence: of a body under a plate that vibrates at 26 kHz (LuGre, multipliers within 4e-4 of one) starts end after some
+150 maps; period by period 7,000 leave 8 of 9 starts open (tests/methods/shooting/test_leaps.py).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictionlab.methods.periodic.attraction import KnownOrbit
+from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.values.quantities import Floats
+
+MOST_MAPS = 1000
+"""True maps after which no leap is tried any more."""
+SHARE, FLOOR = 0.02, 1e-9
+"""Error of a leap over the distance that it leads, and over the size of the state."""
+ON_THE_WAY = (0.11, 0.3, 0.62, 0.83)
+"""Shares of a leap at which true maps are made: it may cross what its end does not see."""
+MOST_ON_A_SPIRAL = 16
+"""States on the way to an orbit at which a true map must lead as the derivative of the orbit says."""
+OBEYED = 0.1
+"""Share of the change by a map that the affine map may miss there."""
+
+
+@dataclass
+class Leaper:
+    """A motion at one belt speed that is led on by leaps.
+
+    state: the one it has come to. periods: how many it has passed. maps: true maps made, derivatives included.
+    """
+
+    problem: PeriodicProblem
+    belt_speed: float
+    state: Floats
+    longest: int
+    periods: int = 0
+    maps: int = 0
+
+    def __post_init__(self) -> None:
+        self._length = 2 * self._fewest
+        self._size = float(np.linalg.norm(self.state)) + abs(self.belt_speed)
+
+    @property
+    def _fewest(self) -> int:
+        """Periods of the shortest leap that costs no more than true maps."""
+        return self.state.size + 3
+
+    def leap(self) -> Floats | None:
+        """Lead the motion on; return Newton's step from where it was, None where a leap pays no longer."""
+        base = self._mapped(self.state[None])[0] - self.state
+        matrix = self._derivative(self.state)
+        length = self._within_growth(matrix)
+        while length >= self._fewest and np.isfinite(matrix).all() and self.maps < MOST_MAPS:
+            moved, error, defect = self._tried(matrix, base, length)
+            allowed = SHARE * float(np.linalg.norm(moved)) + FLOOR * self._size
+            ratio = error / allowed if math.isfinite(error) else math.inf
+            if ratio <= 1.0:
+                self.state = self.state + moved + defect / 3.0  # one order more
+                self.periods += length
+                self._size = max(self._size, float(np.linalg.norm(self.state)))
+                self._length = int(min(self.longest, length * min(8.0, 0.9 * max(ratio, 1e-6) ** (-1 / 3))))
+                return _newton(matrix, base)
+            length = int(length * max(0.1, 0.8 * ratio ** (-1 / 3))) if math.isfinite(ratio) else length // 10
+        return None
+
+    def ends_on(self, orbit: KnownOrbit) -> bool:
+        """Check that the affine map of an orbit leads the whole way there: true maps along its spiral obey it."""
+        away = self.state - orbit.state
+        # how far off the orbit itself is, by a fine map, is what cannot be told apart
+        off = float(np.linalg.norm(self._mapped(orbit.state[None])[0] - orbit.state))
+        noise = 2.0 * off + FINE * self.problem.mass.normal_load
+        steps = _spread(orbit.monodromy)
+        powers = [np.linalg.matrix_power(orbit.monodromy, step) for step in steps]
+        places = np.array([orbit.state + power @ away for power in powers])
+        ends = self._mapped(places)
+        before, after = places - orbit.state, ends - orbit.state
+        predicted = before @ orbit.monodromy.T
+        changed = np.linalg.norm(predicted - before, axis=1)
+        missed = np.linalg.norm(predicted - after, axis=1)
+        return bool((missed <= OBEYED * changed + noise).all())
+
+    def _tried(self, matrix: Floats, base: Floats, length: int) -> tuple[Floats, float, Floats]:
+        """Where a leap of so many periods leads, its error by true maps there and on the way, and what it misses."""
+        power, total = power_sum(matrix, length)
+        moved = total @ base
+        parts = [power_sum(matrix, max(1, int(share * length))) for share in ON_THE_WAY]
+        places = np.array([self.state + moved, *(self.state + each[1] @ base for each in parts)])
+        ends = self._mapped(places)
+        expected = np.array([power @ base, *(each[0] @ base for each in parts)])
+        defects = (ends - places - expected) @ total.T
+        return moved, float(np.linalg.norm(defects, axis=1).max()) / 3.0, defects[0]
+
+    def _within_growth(self, matrix: Floats) -> int:
+        """Length of the next leap; what grows may grow a thousandfold in it."""
+        if not np.isfinite(matrix).all():
+            return 0
+        radius = float(np.abs(np.linalg.eigvals(matrix)).max())
+        return (
+            min(self._length, int(math.log(1e3) / math.log(radius))) if radius > 1.0 + 1e-12 else self._length
+        )
+
+    def _mapped(self, states: Floats) -> Floats:
+        self.maps += len(states)
+        return self.problem.mapped(np.full(len(states), self.belt_speed), states)
+
+    def _derivative(self, state: Floats) -> Floats:
+        self.maps += 2 * state.size
+        known = state[None].copy()
+        curve, _ = self.problem.called(np.array([self.belt_speed]), known, self.problem.goal, MULTIPLIERS)
+        matrix: Floats = curve.matrices[0]
+        return matrix
+
+
+def power_sum(matrix: Floats, length: int) -> tuple[Floats, Floats]:
+    """Return M^H and 1 + M + ... + M^(H-1) by repeated squaring."""
+    power, total = np.eye(len(matrix)), np.zeros_like(matrix)
+    for bit in bin(length)[2:]:
+        total, power = total + power @ total, power @ power
+        if bit == "1":
+            total, power = total + power, power @ matrix
+    return power, total
+
+
+def _newton(matrix: Floats, base: Floats) -> Floats:
+    """Step to the fixed point of the affine map; the least one where multipliers are one."""
+    return np.asarray(np.linalg.lstsq(np.eye(len(base)) - matrix, base, rcond=1e-7)[0])
+
+
+def _spread(matrix: Floats) -> list[int]:
+    """Counts of periods after which a spiral is looked at, until a hundredth of the distance is left."""
+    modulus = np.abs(np.linalg.eigvals(matrix))
+    slowest = float(modulus[modulus < 1.0 - 1e-9].max(initial=1e-3))
+    last = max(1, int(math.log(0.01) / math.log(max(slowest, 1e-3))))
+    if last <= MOST_ON_A_SPIRAL:
+        return list(range(last + 1))
+    half = MOST_ON_A_SPIRAL // 2
+    return sorted({*range(half), *np.geomspace(half, last, half).astype(int).tolist()})

@@ -79,9 +79,9 @@ OF_SPEED = "sliding_friction", "sliding_vector"
 
 
 class OfEach:
-    """Method of one number that an instance of its law also calls with arrays; its class has the plain method.
+    """Method of one number that an instance of its law also calls with arrays.
 
-    Compiled code asks the class and so gets the plain method.
+    Its class has the plain method, and compiled code asks the class.
     """
 
     def __init__(self, method: FunctionType) -> None:
@@ -305,8 +305,9 @@ class FrictionLaw(Labelled, ABC):
         return self.planar_form() != "rotated"
 
     def obeys(self, check: str) -> bool:
-        """Check whether the law claims to pass a check of the battery: ``expected_failures`` does not name it.
+        """Check whether the law claims to pass a check of the battery.
 
+        It does unless ``expected_failures`` names the check.
         A shortcut that rests on a property of laws asks for the check of that property:
         ``law.obeys("oddness")``.
 
@@ -407,7 +408,7 @@ class FrictionLaw(Labelled, ABC):
         return ()
 
     def numbers(self) -> dict[str, Number]:
-        """Return the parameters that kernels receive: numbers, whole numbers, tuples of numbers, and properties.
+        """Return the parameters that kernels receive: numbers, tuples of numbers, and properties.
 
         Optional numbers (default ``None``) are left out: only properties read them, so the kernels of a law
         do not depend on which are given. Kernels receive a tuple as an array: use ``len`` and indices.
@@ -457,8 +458,9 @@ class SlidingLaw(FrictionLaw, ABC):
         return self.sliding_friction(0.0)
 
     def vanishes_at_rest(self) -> bool:
-        """Check whether friction vanishes with slip, as that of a film of fluid does; nothing is held at rest.
+        """Check whether friction vanishes with slip, as that of a film of fluid does.
 
+        Nothing is then held at rest.
         Dry friction does not vanish. The battery takes a law whose friction vanishes without this declaration
         to have the smoothing width of a method in it.
 
@@ -488,7 +490,7 @@ def _is_number(value: object) -> bool:
 
 
 def _number(value: Any) -> Number:
-    """Return a property as kernels receive it: ``int`` and tuples keep their type, the others become ``float``."""
+    """Return a property as kernels receive it: ``int`` and tuples keep their type."""
     if isinstance(value, tuple):
         return tuple(float(number) for number in value)
     return value if isinstance(value, int) and not isinstance(value, bool) else float(value)

@@ -112,7 +112,7 @@ class CompliantLaw(BristleLaw, ABC):
 
     @property
     def bristle_stiffness(self) -> float:
-        """Friction coefficient per deflection [1/scene length], from whichever of the three parameters is given."""
+        """Friction coefficient per deflection [1/scene length], from whichever parameter is given."""
         if self.stiffness is not None:
             return self.stiffness
         if self.presliding_length is not None:

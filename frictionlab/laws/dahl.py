@@ -62,7 +62,7 @@ class Dahl(CompliantLaw):
         return self.mu
 
     def rate(self, v: Any, z: Any) -> Any:
-        """Compute z' = v - |v| z/saturation for exponent 1; else v sgn(u) |u|^exponent, along one direction."""
+        """Compute z' = v - |v| z/saturation for exponent 1; else z' = v sgn(u) |u|^exponent on the line."""
         if self.exponent == 1.0:
             return v - (abs(v) / self.saturation) * z
         left = 1.0 - math.copysign(1.0, v.real) * z.real / self.saturation

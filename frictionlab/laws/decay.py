@@ -1,4 +1,7 @@
-"""Exponential decay from 1 to 0: of Stribeck friction over speed, of a bristle's initial deflection over slip."""
+"""Exponential decay from 1 to 0.
+
+Stribeck friction decays so over speed, the initial deflection of a bristle over slip.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,10 @@ def exp_power_decay(u: float, power: float) -> float:
 
 
 def steepest_slope(power: float) -> float:
-    """Return the largest slope of ``exp_power_decay``, that at its inflection; infinite for powers below one."""
+    """Return the largest slope of ``exp_power_decay``, that at its inflection.
+
+    It is infinite, at rest, for powers below one.
+    """
     if power < 1.0:
         return math.inf
     bend = 1.0 - 1.0 / power  # u^power there
@@ -24,7 +30,7 @@ def steepest_slope(power: float) -> float:
 
 
 def exp_decay(lengths: float) -> float:
-    """Compute exp(-lengths), ``lengths`` >= 0 being a number of decay lengths; 0 if it is far below rounding."""
+    """Compute exp(-lengths) for a number of decay lengths >= 0; 0 if it is far below rounding."""
     return (
         math.exp(-lengths) if lengths < 60.0 else 0.0
     )  # an exponential that underflows takes ten times as long

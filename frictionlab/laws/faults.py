@@ -25,11 +25,11 @@ LONGEST_TEXT = 500
 
 
 class BrokenPlugin(Exception):
-    """Error of a law or method of another package that cannot be used; the message names it and the remedy."""
+    """Error of a law or method of another package that cannot be used; it names law and remedy."""
 
 
 class CannotCompile(Exception):
-    """Error of a law that runs as Python but that numba cannot compile; the message names law, line and remedy."""
+    """Error of a law that runs as Python but that numba cannot compile; it names law, line and remedy."""
 
 
 def from_outside(law: type) -> bool:
@@ -87,7 +87,7 @@ def definition_line(code: CodeType) -> str:
 
 
 def cannot_compile(law: type[FrictionLaw], message: str) -> CannotCompile:
-    """Return the error for a law that numba rejects: numba's reason in one line and the law's line it refers to."""
+    """Return the error for a law that numba rejects, with numba's reason and the law's line it is about."""
     spots = [spot for spot in _LOCATION.finditer(message) if _own_file(spot["file"], law)]
     spot = spots[0] if spots else None
     where = source_line(_own_file(spot["file"], law), int(spot["line"] or spot["number"])) if spot else ""
@@ -107,7 +107,7 @@ _REMEDY = (
 
 
 def _numba_reason(before: str, law: type[FrictionLaw]) -> str:
-    """Return the sentence of numba's message before it names a line; reworded if it would not help the author."""
+    """Return the sentence before the line in numba's message; reworded if it would not help the author."""
     lines = [line.strip() for line in before.splitlines() if line.strip()]
     text = re.sub(r"(, defined|Raised)$", "", lines[-1] if lines else "").strip()
     unknown = re.match(r"Unknown attribute '(\w+)' of type Numbers", text)
@@ -130,7 +130,7 @@ def _own_file(file: str, law: type[FrictionLaw]) -> str:
 
 
 def failing_law(problem: BaseException) -> str | None:
-    """Return a sentence naming the law of another package whose lines raised an error; None if no such law did."""
+    """Return a sentence naming the law of another package whose lines raised an error; None if none did."""
     for law in _laws(FrictionLaw):  # type: ignore[type-abstract]  # only subclasses are read
         files = files_of(law)
         if innermost_line(problem, files):
@@ -152,7 +152,7 @@ def lost_error(law: FrictionLaw) -> str | None:
 
 
 def outside_files(problem: BaseException) -> set[str]:
-    """Return the files in an error's traceback, without those of frictionlab, of pydantic and of Python itself."""
+    """Return the files in an error's traceback without those of frictionlab, pydantic and Python itself."""
     names = {frame.filename for frame in traceback.extract_tb(problem.__traceback__)}
     return {name for name in names if not name.startswith(("<", _PACKAGE)) and not _is_pythons(name)}
 

@@ -11,9 +11,10 @@ from frictionlab.laws.decay import exp_decay
 
 
 class Jenkins(CompliantLaw):
-    """Jenkins friction: a spring that deflects with the slip up to the force mu, in series with a Coulomb slider.
+    """Jenkins friction: a spring that deflects with slip up to the force mu, in series with a slider.
 
-    In the plane the slider moves along the spring while the spring force is mu: its path is a tractrix.
+    The slider has Coulomb friction. In the plane it moves along the spring while the spring force is
+    mu: its path is a tractrix.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ class Jenkins(CompliantLaw):
         return self.mu
 
     def rate(self, v: Any, z: Any) -> Any:
-        """Return v; if slip would stretch the spring beyond yield, v without its component along the spring."""
+        """Return v, without its component along the spring if slip would stretch that beyond yield."""
         along = (z * v.conjugate()).real
         if along <= 0.0 or abs(z) < self.reach:
             return v

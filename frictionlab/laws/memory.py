@@ -243,7 +243,9 @@ class BristleLaw(FrictionLaw, ABC):
         return math.inf
 
     def elastic_unloading(self) -> bool:
-        """Check whether z follows the slip wherever z.v <= 0: friction may have a corner where that begins or ends.
+        """Check whether z follows the slip wherever z.v <= 0.
+
+        Friction may have a corner where that begins or ends.
 
         Returns
         -------
@@ -272,7 +274,7 @@ def bristle_on_the_line(law: Any, v: float, z: float) -> Any:
 
 
 def bristle_in_the_plane(law: Any, v: complex, z: complex) -> Any:
-    """Compute rate of deflection and friction coefficient of a bristle law in the plane, in its ``planar`` form."""
+    """Compute rate of deflection and friction coefficient of a bristle law in the plane, by its form."""
     if law.form == VECTORIAL:
         dz = law.rate(v, z)
         return dz, law.friction(v, z, dz)

@@ -102,7 +102,7 @@ class StribeckBristle(DampedLaw, ABC):
         return self.constant_sliding_friction() and self.bristle_damping == 0.0
 
     def passive(self) -> bool:
-        """Check that viscosity >= damping*(mu_static/mu_kinetic - 1), the bound of Barahanov & Ortega (2000)."""
+        """Check the bound viscosity >= damping*(mu_static/mu_kinetic - 1) of Barahanov & Ortega (2000)."""
         return self.viscosity >= self.bristle_damping * (self.peak / self.mu_kinetic - 1.0)
 
 

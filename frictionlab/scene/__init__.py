@@ -1,1 +1,1 @@
-"""The body, its springs, dashpots, loads and the belt it slides on."""
+"""Body, its springs, dashpots, loads and the belt it slides on."""

@@ -1,8 +1,7 @@
-"""Keys and numbers of a part in SI units as people write them.
+"""Keys and numbers of a part in SI units as people write them, and copies of records with other values.
 
-``belt_speed: 2 mm/s`` and ``belt_speed_m_per_s: 2 mm/s`` are ``belt_speed_m_per_s: 0.002``.
-
-The values of a record with some replaced, by name or by path.
+``belt_speed: 2 mm/s`` and ``belt_speed_m_per_s: 2 mm/s`` are ``belt_speed_m_per_s: 0.002``. Values of a
+record are replaced by name or by path.
 """
 
 from __future__ import annotations
@@ -23,15 +22,16 @@ from frictionlab.values.validation import field_path
 _SUFFIX = re.compile(
     r"_(N_s_per_m3|N_per_m3|N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|(?<!_sq_)per_m|kg_m|kg|N|(?<!_per_)m|J|s)$"
 )
-"""What the key of a number, or the name of a result, ends in: its unit."""
+"""Unit at the end of the key of a number, or of the name of a result."""
 _WITHOUT_SUFFIX = {"phase": "deg", "direction": "deg", "amplitude": "", "damping_ratio": ""}
-"""The units of the other numbers."""
+"""Units of numbers whose keys do not end in a unit."""
 
 
 class AsWritten(ScenePart):
-    """A part in SI units; other_names: the keys without a unit behind them, and the fields they give.
+    """Part in SI units.
 
-    one_of: names of one and the same thing, of which exactly one is given.
+    ``other_names`` maps the keys without a unit to their fields. Each tuple in ``one_of`` names alternatives,
+    of which exactly one is given.
     """
 
     other_names: ClassVar[Mapping[str, str]] = {}
@@ -58,17 +58,17 @@ class AsWritten(ScenePart):
 
     @classmethod
     def _needed(cls, _data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
-        """Those of ``one_of`` that these values need."""
+        """Return those of ``one_of`` that these values need."""
         return cls.one_of
 
 
 def without_unit(name: str) -> str:
-    """The name of a number in SI units without its unit."""
+    """Return the name of a number in SI units without its unit."""
     return _SUFFIX.sub("", name)
 
 
 def unit_of(name: str) -> str | None:
-    """The unit of the number of this name, None where it may be no number."""
+    """Return the unit of the number of this name, or None if it may be no number."""
     found = _SUFFIX.search(name)
     if not found:
         return _WITHOUT_SUFFIX.get(name)
@@ -77,7 +77,10 @@ def unit_of(name: str) -> str | None:
 
 
 def in_si(key: str, name: str, value: Any) -> Any:
-    """The value of a field, given under a key: a text with a unit as a number, what is no number as why."""
+    """Return the value of a field, given under a key, in SI units.
+
+    A text with a unit becomes a number; a value that is no number becomes the reason why not.
+    """
     unit = unit_of(name)
     if unit is None:
         return value
@@ -92,7 +95,7 @@ def in_si(key: str, name: str, value: Any) -> Any:
 
 
 def _one_of(data: dict[str, Any], names: tuple[str, ...]) -> None:
-    """Put in what is wrong where not exactly one of the names is given."""
+    """Put in a message if not exactly one of the names is given."""
     given = [name for name in names if data.get(name) is not None]
     if not given:
         others = f" (or {' or '.join(map(without_unit, names[1:]))})" if names[1:] else ""
@@ -102,6 +105,7 @@ def _one_of(data: dict[str, Any], names: tuple[str, ...]) -> None:
 
 
 def _fields(data: Mapping[str, Any], part: type[AsWritten]) -> Iterator[tuple[str, Any]]:
+    """Yield values by the names of their fields, with mistakes in the place of values given twice."""
     for key, value in data.items():
         name = part.other_names.get(key, key)
         if name != key and name in data:
@@ -116,9 +120,9 @@ def _fields(data: Mapping[str, Any], part: type[AsWritten]) -> Iterator[tuple[st
 
 
 def changed(record: Record, tree: Mapping[str, Any], changes: Any, others: Mapping[str, Any]) -> Any:
-    """The record made again from its values with changes by path and others by name.
+    """Return the record made again from its values with changes by path and others by name.
 
-    Raises WrongValues, TypeError.
+    Raises WrongValues, and TypeError if the changes are no mapping.
     """
     if changes is not None and not isinstance(changes, Mapping):
         raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
@@ -127,7 +131,7 @@ def changed(record: Record, tree: Mapping[str, Any], changes: Any, others: Mappi
 
 
 def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Values by the paths of the fields they are for."""
+    """Yield values by the paths of the fields they are for."""
     for path, value in changes.items():
         field = field_path(record, path)
         key, name = (each.rpartition(".")[2] for each in (path, field))
@@ -135,7 +139,7 @@ def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tup
 
 
 def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """A copy of nested values with some replaced, by dotted path."""
+    """Return a copy of nested values with some replaced, by dotted path."""
     new = dict(tree)
     for path, value in values.items():
         head, _, rest = path.partition(".")

@@ -1,4 +1,4 @@
-"""The numbers of a scene for kernels: mass, springs, dashpots, loads, and the friction-free response."""
+"""Numbers of a scene for kernels: mass, springs, dashpots, loads, and the friction-free response."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from frictionlab.scene.varying import packed
 
 
 class Bends(NamedTuple):
-    """What a body adds along x1 not linearly: spring_2 x^2 + spring_3 x^3 + (dashpot_1 x + dashpot_2 x^2) x'.
+    """Coefficients of the nonlinear force along x1.
 
-    sine, cosine: of the motion without friction, about, by one harmonic; no reference, but where searches begin.
+    The force is spring_2 x^2 + spring_3 x^3 + (dashpot_1 x + dashpot_2 x^2) x'.
+
+    sine, cosine: approximately those of the motion without friction, by one harmonic; searches begin there,
+    it is no reference motion.
     """
 
     spring_2: float
@@ -29,9 +32,10 @@ class Bends(NamedTuple):
 class Relaxing(NamedTuple):
     """Springs in series with dashpots, beside those of the body along x1: forces q' = stiffness x1' - rate q.
 
-    Tuples of n numbers each; where kernels follow slip by DOP853, numbers in lanes. force: what they hold a mass back
-    with at the time ``since``, where that is known. hardest: their stiffness together, which fast motion feels.
-    lasting: together as a dashpot, which slow motion feels. fastest: of the rates.
+    stiffness, rate, force: tuples of n numbers each; numbers in lanes if kernels follow slip by DOP853.
+    force: those that hold a mass back at the time ``since``, if they are known. hardest: stiffness of all
+    springs together, which fast motion feels. lasting: all of them together as a dashpot, which slow motion
+    feels. fastest: largest of the rates.
     """
 
     stiffness: Any
@@ -44,11 +48,12 @@ class Relaxing(NamedTuple):
 
 
 class Mass(NamedTuple):
-    """The numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau)).
+    """Numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau)).
 
-    varying: empty where these forces are all that changes in time; else all of it, and the forces are the harmonics
-    of the loads at this frequency. bends: empty where springs and dashpots are linear. relaxing: empty where nothing
-    of the body remembers. hardening: force over x1 of what does, at this frequency.
+    varying: everything that changes in time, if that is more than these forces, which are then the harmonics
+    of the loads at this frequency; else empty. bends: empty if springs and dashpots are linear. relaxing:
+    empty if nothing of the body remembers. hardening: force over x1 of the elements that remember, at this
+    frequency.
     """
 
     damping: float
@@ -66,7 +71,10 @@ class Mass(NamedTuple):
 
 
 def one_harmonic_motions(mass: Mass, rub: float = 0.0) -> list[complex]:
-    """Phasors of x1 that balance the load by one harmonic, of a body that bends; rub: a force against velocity."""
+    """Compute phasors of x1 that balance the load by one harmonic, of a body that bends.
+
+    ``rub`` is a force against velocity.
+    """
     return list(_balanced(mass.bends[:4], mass.damping, mass.stiffness, mass.frequency, mass.force, rub))
 
 
@@ -79,6 +87,7 @@ def _balanced(
     force: complex,
     rub: float,
 ) -> tuple[complex, ...]:
+    """Compute these phasors from the coefficients of a body; one tuple serves all belt speeds of a curve."""
     spring_2, spring_3, _, dashpot_2 = bends
     load = abs(force)
     if load == 0.0:
@@ -93,7 +102,7 @@ def _balanced(
 
 
 def with_relaxing(mass: Mass, stiffness: Sequence[float], rate: Sequence[float]) -> Mass:
-    """The mass with springs of such stiffness that relax at these rates, nothing deflected."""
+    """Return the mass with springs of such stiffness that relax at these rates, nothing deflected."""
     hardening = sum(
         k * 1j * mass.frequency / complex(r, mass.frequency) for k, r in zip(stiffness, rate, strict=True)
     )
@@ -111,29 +120,30 @@ def with_relaxing(mass: Mass, stiffness: Sequence[float], rate: Sequence[float])
 
 
 def with_free_motion(mass: Mass) -> Mass:
-    """The mass whose bends know its motion without friction: that of the least amplitude."""
+    """Return the mass with its motion without friction, that of the least amplitude, in ``bends``."""
     free = next(iter(one_harmonic_motions(mass)), 0j)
     return mass._replace(bends=mass.bends._replace(sine=free.real, cosine=free.imag))
 
 
 def for_kernels(mass: Mass) -> Mass:
-    """The mass with what varies in one table, its numbers x1 + i x2."""
+    """Return the mass with everything that varies in one table, its numbers x1 + i x2."""
     return mass._replace(varying=packed(mass.varying, True))
 
 
 class BodyNumbers(NamedTuple):
-    """The numbers of a free scene, for kernels that run on the line (``float``) and in the plane (``complex``).
+    """Numbers of a free scene, for kernels that run on the line (``float``) and in the plane (``complex``).
 
-    A constant that differs between x1 and x2 acts as mean*x + split*conj(x), x = x1 + i x2. The motion is the sum of
-    a harmonic reference, the friction-free response where that is bounded, and the deviation from it: ``balanced`` is
-    the force that the reference motion takes, all of the ``load`` but at undamped resonance and where loads are
-    ``varying``. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau). A period map spans
-    ``periods`` periods of the drive. Where ``prescribed``, friction does not change the motion, the reference.
+    A constant that differs between x1 and x2 acts as mean*x + split*conj(x), x = x1 + i x2. The motion is the
+    sum of a harmonic reference, the friction-free response where that is bounded, and the deviation from it.
+    ``balanced`` is the force that the reference motion takes, all of the ``load`` except at undamped
+    resonance and if loads are ``varying``. A sine/cosine pair stands for sine*sin(Omega tau) +
+    cosine*cos(Omega tau). A period map spans ``periods`` periods of the drive. If ``prescribed``, friction
+    does not change the motion, which is the reference.
 
-    ``load`` and ``normal_load`` are the numbers of motion/equation.py, where they become functions of time; elsewhere
-    ``normal_load``, the mean, only measures accuracies and step sizes.
+    ``load`` and ``normal_load`` are the numbers of motion/equation.py, where they become functions of time;
+    elsewhere ``normal_load``, the mean, only measures accuracies and step sizes.
 
-    bends: empty where springs and dashpots are linear; else there is no reference along x1. relaxing: empty where
+    bends: empty if springs and dashpots are linear; else there is no reference along x1. relaxing: empty if
     nothing of the body remembers; its forces are then those of the deviation.
     """
 
@@ -157,7 +167,10 @@ class BodyNumbers(NamedTuple):
 
 
 def on_the_line(mass: Mass, periods: float = 1.0) -> BodyNumbers:
-    """The body with motion along the belt alone: of one in the plane, alike across, what is along the belt."""
+    """Return the body with motion along the belt alone.
+
+    It is the part along the belt of a body in the plane that has the same numbers across.
+    """
     alike = mass._replace(
         transverse_damping=mass.damping, transverse_stiffness=mass.stiffness, transverse_force=0j
     )
@@ -167,7 +180,7 @@ def on_the_line(mass: Mass, periods: float = 1.0) -> BodyNumbers:
 
 
 def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
-    """The body with both motions, of a mass as kernels have it."""
+    """Return the body with both motions, of a mass as kernels have it."""
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
     reference, reference_2 = _friction_free(*along, mass.hardening), _friction_free(*across, 0j)
@@ -200,26 +213,29 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
 def _friction_free(
     damping: float, stiffness: float, frequency: float, force: complex, hardening: complex
 ) -> complex:
-    """Phasor of the friction-free response; 0 at undamped resonance, where it has no bound."""
+    """Compute the phasor of the friction-free response; 0 at undamped resonance, where it has no bound."""
     dynamic = complex(stiffness - frequency**2, damping * frequency) + hardening
     return force / dynamic if dynamic != 0 else 0j
 
 
 def restoring_force(body: BodyNumbers, x: Any, v: Any) -> Any:
-    """Force of linear springs and dashpots per unit mass, to be subtracted from the acceleration."""
+    """Compute the force of linear springs and dashpots per unit mass.
+
+    It is to be subtracted from the acceleration.
+    """
     damping = body.damping_mean * v + body.damping_split * v.conjugate()
     return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
 
 
 def bent_force(body: BodyNumbers, x: Any, v: Any) -> Any:
-    """The same of a body that bends."""
+    """Compute the force of springs and dashpots per unit mass of a body that bends."""
     bends, x1 = body.bends, x.real
     spring = (bends.spring_2 + bends.spring_3 * x1) * x1 * x1
     return restoring_force(body, x, v) + (spring + (bends.dashpot_1 + bends.dashpot_2 * x1) * x1 * v.real)
 
 
 def bent_slopes(body: BodyNumbers, x: Any, v: Any) -> BodyNumbers:
-    """The body with the linear springs and dashpots that it has beside this motion."""
+    """Return the body with the linear springs and dashpots that it has beside this motion."""
     bends, x1 = body.bends, x.real
     spring = (2.0 * bends.spring_2 + 3.0 * bends.spring_3 * x1) * x1
     spring = 0.5 * (spring + (bends.dashpot_1 + 2.0 * bends.dashpot_2 * x1) * v.real)
@@ -233,15 +249,15 @@ def bent_slopes(body: BodyNumbers, x: Any, v: Any) -> BodyNumbers:
 
 
 def span(body: BodyNumbers) -> float:
-    """The time that one period map covers."""
+    """Return the time that one period map covers."""
     return 2.0 * math.pi * body.periods / body.frequency
 
 
 class Motion(NamedTuple):
-    """The numbers of a prescribed slip for kernels: velocities Im(phasor exp(i frequency tau)).
+    """Numbers of a prescribed slip for kernels: velocities Im(phasor exp(i frequency tau)).
 
-    varying: empty where these are all that changes in time; else all of it, the oscillation of the slip as that of a
-    belt, and the velocities are its harmonics at this frequency.
+    varying: everything that changes in time, if that is more than these velocities; else empty. The
+    oscillation of the slip is then that of a belt, and the velocities are its harmonics at this frequency.
     """
 
     normal_load: float

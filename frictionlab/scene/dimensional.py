@@ -94,7 +94,7 @@ class PartInSI(AsWritten):
 
 
 def key_in_si(part: type[ScenePart], name: str) -> str:
-    """Return the key in SI units of a nondimensional name: that of a number with a dimension ends in its unit."""
+    """Return the key in SI units of a nondimensional name; with a dimension it ends in the unit."""
     dimension = dimensions(part).get(name)
     return name if dimension is None else f"{name}_{SUFFIXES[dimension]}"
 
@@ -107,11 +107,11 @@ class _Shaken(PartInSI):
     velocity_amplitude_m_per_s : float, >= 0, optional
         Amplitude of the velocity [m/s].
     displacement_amplitude_m : float, >= 0, optional
-        Amplitude of the displacement [m]: that of the velocity over the circular frequency. Given instead of the
-        velocity's, for a sine alone.
+        Amplitude of the displacement [m]: that of the velocity over the circular frequency. Given
+        instead of the velocity's, for a sine alone.
     acceleration_amplitude_m_per_s2 : float, >= 0, optional
-        Amplitude of the acceleration [m/s^2]: that of the velocity times the circular frequency. Given instead
-        of the velocity's, for a sine alone.
+        Amplitude of the acceleration [m/s^2]: that of the velocity times the circular frequency. Given
+        instead of the velocity's, for a sine alone.
     """
 
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SWINGS,)

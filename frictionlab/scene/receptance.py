@@ -4,14 +4,15 @@ With p = i omega, a body of mass m, spring and dashpot that remembers has H(p) =
 
     D(p) = m p^2 + damping p + stiffness + k (p time)^q / (1 + (p time)^q) + c p^r.
 
-The fourth term is a fractional Zener element in parallel, D^q y = D^q x - y/time^q with the force k y, of order 1 the
-standard linear solid; the fifth the Kelvin-Voigt element of order r (Weyl: the derivative of a periodic motion that
-has gone on for ever). Powers are principal: D is analytic off the negative real axis. Orders are in (0, 1], so that
-neither gives back more than it took.
+The fourth term is a fractional Zener element in parallel, D^q y = D^q x - y/time^q with the force k y; of
+order 1 it is the standard linear solid. The fifth term is the Kelvin-Voigt element of order r (Weyl: the
+derivative of a periodic motion that has gone on for ever). Powers are principal: D is analytic off the
+negative real axis. Orders are in (0, 1], so that neither element gives back more work than it took.
 
 Sources: Bagley & Torvik (1983); of the fractional Zener element Rossikhin & Shitikova (2010).
 
-A body's receptance as a table, measured or computed by others: read, checked and interpolated.
+A body's receptance may also be a table, measured or computed by others: it is read, checked and interpolated
+here.
 """
 
 from __future__ import annotations
@@ -29,18 +30,21 @@ from numpy.typing import NDArray
 from frictionlab.values.quantities import Floats
 
 NEARLY_FREE = 0.3
-"""Share by which it then differs: that of one mode at twice its frequency."""
+"""Relative difference from the free mass below which a response counts as that of the free mass.
+
+It is that of one mode at twice its frequency."""
 COLUMNS_OF_TABLE = "frequency", "real", "imaginary"
 UNITS_OF_TABLE = "_rad_per_s", "_m_per_N", "_m_per_N"
-"""Its columns, and what their names may end in where the file is in SI units."""
+"""Units in which the names of the columns may end if the file is in SI units."""
 
 
 @dataclass(frozen=True)
 class TabulatedBody:
-    """x1 over force at these circular frequencies; above the last one that of a free mass.
+    """Body by x1 over force at these circular frequencies; above the last one it is that of a free mass.
 
-    Between them the cubic through the nearest four values, of the receptance or of its inverse without the mass:
-    whichever three of them foretell better, as the one is smooth at antiresonances and the other at resonances.
+    Between frequencies x1 over force is the cubic through the nearest four values, of the receptance or of
+    its inverse without the mass: the receptance is smooth at antiresonances, its inverse at resonances. The
+    cubic that changes less if the farthest of the four values is left out is used.
     """
 
     frequency: tuple[float, ...]
@@ -51,33 +55,33 @@ class TabulatedBody:
 
     @property
     def known_to(self) -> float:
-        """The last frequency."""
+        """Last frequency of the table."""
         return self.frequency[-1]
 
     @property
     def detail(self) -> float:
-        """The last frequency, too."""
+        """Last frequency of the table."""
         return self.frequency[-1]
 
     @cached_property
     def fastest(self) -> float:
-        """The last frequency at which the response is not yet nearly that of the free mass."""
+        """Last frequency at which the response is not yet nearly that of the free mass."""
         omega, values = np.array(self.frequency), np.array(self.values)
         far = np.abs(1.0 + self.mass * omega**2 * values) > NEARLY_FREE
         return float(omega[np.flatnonzero(far)[-1]])
 
     @cached_property
     def digest(self) -> str:
-        """Of frequencies and values."""
+        """Digest of frequencies and values."""
         return hashlib.sha256(repr((self.frequency, self.values)).encode()).hexdigest()[:16]
 
     @cached_property
     def dissipates(self) -> bool:
-        """At every frequency of the table but 0."""
+        """True if the body dissipates at every frequency of the table but 0."""
         return all(value.imag < 0.0 for value in self.values[1:])
 
     def receptance(self, omega: Floats) -> ComplexValues:
-        """Interpolated, or beyond."""
+        """Compute x1 over force at these circular frequencies: interpolated, or beyond the table."""
         at = np.asarray(omega, dtype=np.float64)
         found = np.empty(at.shape, dtype=np.complex128)
         above = at > self.known_to
@@ -86,16 +90,19 @@ class TabulatedBody:
         return found
 
     def beyond(self, p: ComplexValues) -> ComplexValues:
-        """That of the free mass."""
+        """Compute x1 over force of the free mass."""
         return 1.0 / (self.mass * np.asarray(p) ** 2)
 
     def scaled(self, frequency_unit: float, receptance_unit: float) -> TabulatedBody:
-        """The same body, frequency and receptance multiplied by these; the mass is told in the new units already."""
+        """Return the body with frequency and receptance multiplied by these.
+
+        Its mass is in the new units already.
+        """
         values = tuple(receptance_unit * each for each in self.values)
         return TabulatedBody(tuple(frequency_unit * each for each in self.frequency), values, self.mass)
 
     def halved(self) -> TabulatedBody:
-        """Every other row, the last one kept."""
+        """Return the body with every other row of the table, the last one kept."""
         last = () if len(self.frequency) % 2 else (-1,)
         rows = [*range(0, len(self.frequency), 2), *last]
         return TabulatedBody(
@@ -112,8 +119,10 @@ class TabulatedBody:
 
 
 def _cubic(nodes: Floats, values: ComplexValues, at: Floats) -> tuple[ComplexValues, Floats]:
-    """The polynomial through the nearest four nodes (or all, if they are fewer), and how far that through all but the
-    farthest of them is from it."""
+    """Compute the polynomial through the nearest four nodes, or all if they are fewer, and its change.
+
+    The change is the distance to the polynomial through all of these nodes but the farthest.
+    """
     count = min(4, len(nodes))
     first = np.clip(np.searchsorted(nodes, at) - 2, 0, len(nodes) - count)
     x, y = (each[first[:, None] + np.arange(count)] for each in (nodes, values))
@@ -125,6 +134,7 @@ def _cubic(nodes: Floats, values: ComplexValues, at: Floats) -> tuple[ComplexVal
 
 
 def _lagrange(x: Floats, y: ComplexValues, at: Floats) -> ComplexValues:
+    """Compute the polynomials through x and y, by rows, at these places."""
     total = np.zeros(len(at), dtype=np.complex128)
     for j in range(x.shape[1]):
         share = np.ones(len(at))
@@ -136,9 +146,9 @@ def _lagrange(x: Floats, y: ComplexValues, at: Floats) -> ComplexValues:
 
 
 def read_receptance(file: str, free_mass: float | None, in_si: bool = False) -> TabulatedBody:
-    """The body of a file. Raises ValueError with a sentence that begins with the file and the line.
+    """Return the body of a file; with ``in_si`` the names of columns may end in units.
 
-    in_si: the names of columns may have units behind them.
+    Raises ValueError with a sentence that begins with the file and the line.
     """
     path = Path(file)
     try:
@@ -180,7 +190,7 @@ def _read(file: str, in_si: bool, _stamp: int) -> tuple[tuple[float, ...], tuple
 
 
 def _wrong_row(before: list[float], omega: float, value: complex) -> str:
-    """What is wrong with a row after those of these frequencies, or ''."""
+    """Return the mistake in a row that follows those of these frequencies, or ''."""
     if not (np.isfinite(omega) and np.isfinite(value)):
         return "needs finite numbers"
     if not before and omega != 0.0:
@@ -200,12 +210,14 @@ ComplexValues = NDArray[Any]
 
 
 class LinearBody(Protocol):
-    """A body of which a force moves x1 linearly.
+    """Body whose x1 depends linearly on the force.
 
-    mass, damping: of its response to high frequencies, 1/(mass p^2 + damping p + ...). known_to: frequency above
-    which ``beyond`` is the response, analytic in p where Re(p/i) is at least that. fastest: frequency above which it
-    does not swing by itself. detail: frequency up to which its response in time has details. smooth: whether its
-    answer to a jump of force is analytic just after the jump. dissipates: at every frequency."""
+    mass, damping: those of its response to high frequencies, 1/(mass p^2 + damping p + ...). known_to:
+    frequency above which ``beyond`` is the response, analytic in p where Re(p/i) is at least that. fastest:
+    frequency above which the body does not swing by itself. detail: frequency up to which its response in
+    time has details. smooth: true if its response to a jump of force is analytic just after the jump.
+    dissipates: true if it dissipates at every frequency.
+    """
 
     @property
     def mass(self) -> float: ...
@@ -231,17 +243,17 @@ class LinearBody(Protocol):
     def __hash__(self) -> int: ...
 
     def receptance(self, omega: Floats) -> ComplexValues:
-        """x1 over force at these circular frequencies >= 0."""
+        """Compute x1 over force at these circular frequencies >= 0."""
         ...
 
     def beyond(self, p: ComplexValues) -> ComplexValues:
-        """The same as a function of p = i omega, beyond ``known_to``."""
+        """Compute x1 over force as a function of p = i omega, beyond ``known_to``."""
         ...
 
 
 @dataclass(frozen=True)
 class RememberingBody:
-    """Mass 1, spring, dashpot, and beside them a relaxing and a fractional element."""
+    """Body of mass 1, spring, dashpot, and beside them a relaxing and a fractional element."""
 
     damping: float
     stiffness: float = 1.0
@@ -251,7 +263,7 @@ class RememberingBody:
 
     @property
     def known_to(self) -> float:
-        """Twice as far as any pole is from zero: there D is as large as its mass alone."""
+        """Frequency twice as far as any pole is from zero: there D is as large as its mass alone."""
         springs = self.stiffness + (2.0 * self.relaxation.stiffness if self.relaxation else 0.0)
         bound = 1.0
         for _ in range(200):
@@ -263,30 +275,30 @@ class RememberingBody:
 
     @property
     def fastest(self) -> float:
-        """That of all springs together, hardened by the fractional element."""
+        """Frequency of all springs together, hardened by the fractional element."""
         return self.known_to / 2.0
 
     @property
     def detail(self) -> float:
-        """The same."""
+        """Frequency up to which the response in time has details: ``fastest``."""
         return self.fastest
 
     @property
     def smooth(self) -> bool:
-        """Not where a power that is no whole number remembers."""
+        """True unless an element has an order that is no whole number."""
         return all(part is None or part.order == 1.0 for part in (self.relaxation, self.fractional))
 
     @property
     def dissipates(self) -> bool:
-        """At every frequency."""
+        """True if the body dissipates at every frequency."""
         return self.damping > 0.0 or self.relaxation is not None or self.fractional is not None
 
     def dynamic_stiffness(self, p: ComplexValues) -> ComplexValues:
-        """D(p)."""
+        """Compute D(p)."""
         return (self.mass * p + self.damping) * p + self.stiffness + self.memory(p)
 
     def memory(self, p: ComplexValues) -> ComplexValues:
-        """Force over x1 of what remembers."""
+        """Compute force over x1 of the elements that remember."""
         total = np.zeros_like(p)
         if self.relaxation:
             power = (p * self.relaxation.time) ** self.relaxation.order
@@ -296,16 +308,16 @@ class RememberingBody:
         return total
 
     def receptance(self, omega: Floats) -> ComplexValues:
-        """1/D(i omega)."""
+        """Compute 1/D(i omega)."""
         return 1.0 / self.dynamic_stiffness(1j * np.asarray(omega, dtype=np.float64))
 
     def beyond(self, p: ComplexValues) -> ComplexValues:
-        """1/D(p)."""
+        """Compute 1/D(p)."""
         return 1.0 / self.dynamic_stiffness(p)
 
 
 def linear_body(scene: Any) -> LinearBody:
-    """That of a scene along x1."""
+    """Return the linear body of a scene along x1."""
     body = scene.body
     if body is not None and body.receptance is not None:
         measured: LinearBody = body.receptance.body()

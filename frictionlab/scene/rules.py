@@ -1,4 +1,4 @@
-"""Which parts of a scene go together, in whatever units: each problem as ``path: what``."""
+"""Rules on which parts of a scene go together, in whatever units: each problem as ``path: what``."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from frictionlab.scene.signals import FULL_TURN, signal_of
 from frictionlab.scene.waveforms import LONGEST_COMMON, as_fraction
 
 SHAKEN = "belt_vibration", "normal_load_variation"
-"""The parts that take the drive's frequency, or give one where there is no drive."""
+"""Parts that take the drive's frequency, or give one if there is no drive."""
 
 
 def problems_of_parts(scene: Any) -> list[str]:
-    """Of a body's loads and of what shakes it otherwise."""
+    """Return the problems of a body's loads and of its other excitations."""
     found = [*_missing_parts(scene), *_directions(scene)]
     found = found or [*_problems_of_frequencies(scene)]
     return found or _problems_of_variation(scene)
 
 
 def replaced_by_table(scene: Any, names: Iterable[str]) -> list[str]:
-    """Of these names, and of the others in its body, those that a receptance leaves no room for."""
+    """Return a problem for each of these names, and of the body's other keys, that a receptance replaces."""
     body = [f"body.{name}" for name in type(scene.body).model_fields if getattr(scene.body, name)]
     stray = [name for name in body if name != f"body.{BY_TABLE}"]
     stray += [name for name in names if getattr(scene, name) is not None]
@@ -30,7 +30,7 @@ def replaced_by_table(scene: Any, names: Iterable[str]) -> list[str]:
 
 
 def problems_of_slip(scene: Any) -> list[str]:
-    """Of a prescribed slip, and of what shakes its normal load."""
+    """Return the problems of a prescribed slip, and of the variation of its normal load."""
     for name in ("damping_ratio", "drive", "transverse", "body", "initial", "belt_vibration"):
         if getattr(scene, name) is not None:
             return [f"{name}: leave it out with a prescribed slip"]
@@ -47,7 +47,7 @@ def problems_of_slip(scene: Any) -> list[str]:
 
 
 def _problems_of_variation(scene: Any) -> list[str]:
-    """Of the least common period, and of a normal load that does not stay positive."""
+    """Return the problems of the least common period, and of a normal load that does not stay positive."""
     return [*_period(scene), *_normal_load(scene)]
 
 
@@ -70,7 +70,10 @@ def _directions(scene: Any) -> Iterator[str]:
 
 
 def _problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
-    """Of what takes a frequency or gives one. given: the part that gives it, the drive where there is one."""
+    """Yield the problems of parts that take a frequency or give one.
+
+    ``given`` names the part that gives it: the drive if there is one.
+    """
     given = "drive" if scene.drive is not None else given
     parts = {name: part for name in SHAKEN if (part := getattr(scene, name)) is not None}
     if not parts:
@@ -93,12 +96,12 @@ def _problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
 
 
 def periods_of(scene: Any) -> int:
-    """The periods of the drive after which everything that changes in time has repeated."""
+    """Return the number of periods of the drive after which everything that changes in time has repeated."""
     return math.lcm(*_denominators(scene).values())
 
 
 def _denominators(scene: Any) -> dict[str, int]:
-    """Of every frequency ratio, by the part that has it."""
+    """Return the denominator of every frequency ratio, by the part that has it."""
     load = scene.transverse.load if scene.transverse is not None else None
     parts = ("transverse.load", load), *((name, getattr(scene, name)) for name in SHAKEN)
     return {

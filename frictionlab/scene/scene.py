@@ -214,7 +214,7 @@ class Scene(ScenePart):
     @model_validator(mode="before")
     @classmethod
     def _from_si_units(cls, data: Any) -> Any:
-        """Fill the fields from ``dimensional``; mistakes inside it are reported by the check of that field."""
+        """Fill the fields from ``dimensional``; the check of that field reports mistakes inside it."""
         if not isinstance(data, dict) or data.get("dimensional") is None:
             return data
         both = sorted(set(data) & set(cls.model_fields) - {"dimensional"})
@@ -277,17 +277,17 @@ class Scene(ScenePart):
 
     @property
     def remembers(self) -> bool:
-        """True if the body is known by its frequency response alone: its force depends on its motion long before."""
+        """True if the body is known by its frequency response alone: its force depends on earlier motion."""
         return not {*REMEMBERING, BY_TABLE}.isdisjoint(self.body_terms)
 
     @property
     def start(self) -> Initial:
-        """Start of the mass, ``initial``; if it is left out, at rest on the belt with the spring undeflected."""
+        """Start of the mass, ``initial``; by default at rest on the belt with the spring undeflected."""
         return self.initial or Initial(velocity=self.belt_speed)
 
     @property
     def frequency(self) -> float:
-        """Frequency of the drive, of the prescribed slip or of another part [omega_1]; 1 for an undriven scene."""
+        """Frequency of the drive, prescribed slip or another part [omega_1]; 1 for an undriven scene."""
         slips = self.slip or self.transverse_slip
         for part in (self.drive, slips, self.belt_vibration, self.normal_load_variation):
             if part is not None and part.frequency is not None:
@@ -301,7 +301,7 @@ class Scene(ScenePart):
 
     @property
     def is_harmonic(self) -> bool:
-        """True if loads, or a prescribed slip, are sines of one frequency and nothing else changes in time."""
+        """True if loads or a prescribed slip are sines of one frequency and nothing else changes in time."""
         load = self.transverse.load if self.transverse is not None else None
         shapes = [
             part.waveform

@@ -1,4 +1,4 @@
-"""One scene at many belt speeds: what a method solves at once."""
+"""Scene at many belt speeds: a method solves it at all of them at once."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from frictionlab.values.quantities import Floats
 
 
 class Scenes(Sequence[Scene]):
-    """A scene along an array of belt speeds; a scene of its own is made of one of them where somebody asks for it.
+    """Scene along an array of belt speeds; the scene at one of them is made when it is asked for.
 
-    given: the belt speeds in the units in which the scene was given [scene velocity; m/s for a scene in SI units].
+    given: the belt speeds in the units in which the scene was given [scene velocity; m/s for a scene in SI
+    units].
 
     >>> from frictionlab import Drive
     >>> scene = Scene(damping_ratio=0.1, normal_load=1, belt_speed=0, drive=Drive(amplitude=1, frequency=2))
@@ -29,7 +30,7 @@ class Scenes(Sequence[Scene]):
 
     @classmethod
     def of(cls, scenes: Sequence[Scene]) -> Scenes:
-        """These scenes, at least one, which differ in belt speed alone."""
+        """Make it of these scenes, at least one, which differ in belt speed alone."""
         if isinstance(scenes, Scenes):
             return scenes
         si = [each.dimensional.belt_speed_m_per_s for each in scenes if each.dimensional is not None]
@@ -37,7 +38,7 @@ class Scenes(Sequence[Scene]):
 
     @property
     def belt_speeds(self) -> Floats:
-        """Every belt speed [scene velocity]."""
+        """Array of belt speeds [scene velocity]."""
         si = self.scene.dimensional
         return self.given if si is None else self.given / si.scales.velocity
 
@@ -57,19 +58,19 @@ class Scenes(Sequence[Scene]):
 
     @cached_property
     def _first(self) -> Scene:
-        """For all who ask what every scene has in common."""
+        """First scene, for callers that need what all scenes have in common."""
         return self.scene.at(float(self.given[0]))
 
     def __iter__(self) -> Iterator[Scene]:
         return (self.scene.at(float(speed)) for speed in self.given)
 
     def taken(self, places: Sequence[int] | NDArray[np.int64]) -> Scenes:
-        """Those at these places."""
+        """Return the scenes at these places."""
         return Scenes(self.scene, self.given[np.asarray(places, dtype=np.int64)])
 
 
 def belt_speeds_of(scenes: Sequence[Scene]) -> Floats:
-    """The belt speed of each scene [scene velocity]."""
+    """Return the belt speed of each scene [scene velocity]."""
     return (
         scenes.belt_speeds if isinstance(scenes, Scenes) else np.array([each.belt_speed for each in scenes])
     )

@@ -1,4 +1,4 @@
-"""Functions of time that repeat: sums of sines, and between corners straight lines."""
+"""Functions of time that repeat: sums of sines, and straight lines between corners."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FULL_TURN = 2.0 * math.pi
 
 
 class Segment(NamedTuple):
-    """A straight line from one corner to the next, again in every period: its value there, and its slope."""
+    """Straight line from one corner to the next, again in every period: start, value there, and slope."""
 
     start: float  # in [0, period)
     value: float
@@ -25,13 +25,16 @@ class Segment(NamedTuple):
 
 
 class Segments(NamedTuple):
-    """A function that is straight between its corners; period in time, lines in the order of their starts."""
+    """Function that is straight between its corners; its lines are in the order of their starts.
+
+    period: that in time.
+    """
 
     period: float
     lines: tuple[Segment, ...]
 
     def at(self, tau: Floats) -> tuple[Floats, Floats]:
-        """Values and slopes; at a corner those after it."""
+        """Compute values and slopes; at a corner those after it."""
         starts = np.array([line.start for line in self.lines])
         phase = np.mod(tau, self.period)
         # Before the first corner of a period its last line is still going on.
@@ -42,32 +45,32 @@ class Segments(NamedTuple):
 
 
 class Wave(NamedTuple):
-    """Im(phasor exp(i frequency tau))."""
+    """Sine of one frequency: Im(phasor exp(i frequency tau))."""
 
     frequency: float
     phasor: complex
 
 
 class Signal(NamedTuple):
-    """The sum of waves and of lines with corners; zero where it has neither."""
+    """Sum of waves and of lines with corners; zero if it has neither."""
 
     waves: tuple[Wave, ...] = ()
     pieces: tuple[Segments, ...] = ()
 
     def __call__(self, tau: ArrayLike) -> Floats:
-        """The value at these times; at a jump that after it."""
+        """Compute the value at these times; at a jump that after it."""
         at = np.asarray(tau, dtype=np.float64)
         total = sum((each.at(at)[0] for each in self.pieces), np.zeros(at.shape))
         return sum((_wave(each, at) for each in self.waves), total)
 
     def lines_at(self, tau: Floats) -> tuple[Floats, Floats]:
-        """Value and slope of the lines alone."""
+        """Compute value and slope of the lines alone."""
         nothing = np.zeros(tau.shape)
         found = [each.at(tau) for each in self.pieces]
         return sum((value for value, _ in found), nothing), sum((slope for _, slope in found), nothing)
 
     def scaled(self, factor: float) -> Signal:
-        """So many times it; nothing at all for zero."""
+        """Return the signal times a factor; an empty signal for a factor of zero."""
         if factor == 0.0:
             return Signal()
         waves = tuple(Wave(each.frequency, factor * each.phasor) for each in self.waves)
@@ -78,11 +81,11 @@ class Signal(NamedTuple):
         return Signal(waves, pieces)
 
     def plus(self, other: Signal) -> Signal:
-        """The sum of two signals."""
+        """Return the sum of two signals."""
         return Signal(self.waves + other.waves, self.pieces + other.pieces)
 
     def corners(self, end: float) -> list[float]:
-        """Its corners in [0, end)."""
+        """Return its corners in [0, end)."""
         found = (
             line.start + k * each.period
             for each in self.pieces
@@ -92,17 +95,17 @@ class Signal(NamedTuple):
         return sorted(tau for tau in found if tau < end)
 
     def between(self, tau: Floats) -> Floats:
-        """The value at rising times from one corner to the next; at both ends that between them."""
+        """Compute the value at rising times from one corner to the next; at both ends that between them."""
         middle = 0.5 * (tau[0] + tau[-1])
         value, slope = (float(each[0]) for each in self.lines_at(np.array([middle])))
         return sum((_wave(each, tau) for each in self.waves), value + slope * (tau - middle))
 
     def reaches_beyond(self, frequency: float) -> bool:
-        """Whether any of its harmonics is above this frequency."""
+        """Check whether any of its harmonics is above this frequency."""
         return bool(self.pieces) or any(each.frequency > frequency for each in self.waves)
 
     def harmonic(self, frequency: float, end: float) -> complex:
-        """Phasor of its harmonic of this frequency, over a period ``end`` of everything."""
+        """Compute the phasor of its harmonic of this frequency, over a period ``end`` of everything."""
         total = sum((each.phasor for each in self.waves if math.isclose(each.frequency, frequency)), 0j)
         edges = [0.0, *self.corners(end), end]
         for start, stop in itertools.pairwise(edges):
@@ -111,7 +114,7 @@ class Signal(NamedTuple):
         return total
 
     def extremes(self, end: float) -> tuple[float, float]:
-        """The least and the largest value over a period ``end``."""
+        """Compute the least and the largest value over a period ``end``."""
         if not self.pieces and len(self.waves) <= 1:
             size = abs(self.waves[0].phasor) if self.waves else 0.0
             return -size, size
@@ -133,7 +136,7 @@ def _wave(wave: Wave, tau: Floats) -> Floats:
 
 
 def highest(values: Floats) -> float:
-    """The largest value; inside, the top of the parabola through it and its neighbours."""
+    """Return the largest value; if it is inside, the top of the parabola through it and its neighbours."""
     at = int(np.argmax(values))
     if not 0 < at < len(values) - 1:
         return float(values[at])
@@ -143,7 +146,7 @@ def highest(values: Floats) -> float:
 
 
 def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: float) -> complex:
-    """Integral of the lines times i exp(-i frequency tau), where they are straight."""
+    """Compute the integral of the lines times i exp(-i frequency tau), between two corners."""
     middle = 0.5 * (start + stop)
     value, slope = (float(each[0]) for each in signal.lines_at(np.array([middle])))
     half, turn = 0.5 * frequency * (stop - start), cmath.exp(-1j * frequency * middle)
@@ -153,7 +156,7 @@ def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: floa
 
 
 def signal_of(form: Form, frequency: float, phase: float) -> Signal:
-    """The waveform of unit size at this circular frequency; phase in degrees."""
+    """Return the signal of a waveform of unit size at this circular frequency; phase in degrees."""
     start, period = math.radians(phase), FULL_TURN / frequency
     waves = tuple(
         Wave(
@@ -173,21 +176,22 @@ def signal_of(form: Form, frequency: float, phase: float) -> Signal:
 
 
 def _wrapped(tau: float, period: float) -> float:
-    """Within [0, period); a rounding error below its end is its beginning."""
+    """Return the time within [0, period); a time that is a rounding error below its end becomes 0."""
     rest = math.fmod(math.fmod(tau, period) + period, period)
     return 0.0 if period - rest <= 1e-14 * period else rest
 
 
 def edges_of(corners: list[float], period: float) -> Floats:
-    """The ends of the pieces between corners, from 0 to the period."""
+    """Return the ends of the pieces between corners, from 0 to the period."""
     return np.array([0.0, *(tau for tau in corners if tau > 0.0), period])
 
 
 class Signals(NamedTuple):
-    """What changes in time in a scene, along x1 and x2.
+    """Excitations of a scene along x1 and x2: everything that changes in time.
 
-    period: after which all of it repeats [1/omega_1]. load [K_1 L]; belt: the vibration of its velocity, for a
-    prescribed slip the oscillation of the slip instead [omega_1 L]; normal_load: its variation [K_1 L].
+    period: the time after which all of them repeat [1/omega_1]. load: in [K_1 L]. belt: vibration of the
+    belt's velocity, or for a prescribed slip the oscillation of the slip [omega_1 L]. normal_load: variation
+    of the normal load [K_1 L].
     """
 
     period: float
@@ -196,7 +200,7 @@ class Signals(NamedTuple):
     normal_load: Signal
 
     def corners(self) -> list[float]:
-        """The times in [0, period) at which any of them has a corner; those a rounding error apart are one."""
+        """Return the times in [0, period) of all corners; times a rounding error apart are one."""
         every = (*self.load, *self.belt, self.normal_load)
         found: list[float] = []
         for tau in sorted({tau for each in every for tau in each.corners(self.period)}):
@@ -205,5 +209,5 @@ class Signals(NamedTuple):
         return found
 
     def edges(self) -> Floats:
-        """The ends of the pieces between corners [pieces + 1], from 0 to the period."""
+        """Return the ends of the pieces between corners [pieces + 1], from 0 to the period."""
         return edges_of(self.corners(), self.period)

@@ -1,9 +1,10 @@
 """Scales of a scene given in SI units, the units that its keys end in, and laws converted to these scales.
 
 Scales of Sulollari, van Dalen & Cabboi, Eq. 2, with omega_1 = sqrt(K_1/M): time 1/omega_1, a length L, force
-K_1 L, and from these velocity omega_1 L and energy K_1 L^2. L is any length: no result in SI units depends on it.
+K_1 L, and from these velocity omega_1 L and energy K_1 L^2. L is any length: no result in SI units depends on
+it.
 
-Springs, dashpots and shaking of a body in SI units, in whichever of their numbers they are given.
+Springs, dashpots and oscillations of a body in SI units are read from whichever of their numbers are given.
 """
 
 from __future__ import annotations
@@ -35,15 +36,15 @@ SUFFIXES = {
     CUBIC_STIFFNESS: "N_per_m3",
     CUBIC_DAMPING: "N_s_per_m3",
 }
-"""What the key of a number of each dimension ends in where a scene is in SI units."""
+"""Units at the end of the key of a number, by its dimension, if a scene is in SI units."""
 
 _RecordT = TypeVar("_RecordT", bound=Record)
 
 
 class Units(NamedTuple):
-    """The units of a scene's nondimensional numbers: length L [m], time 1/omega_1 [s], force K_1 L [N], mass M [kg].
+    """Units of a scene's nondimensional numbers: L [m], time 1/omega_1 [s], force K_1 L [N], mass M [kg].
 
-    mass: where it is left out that of the others.
+    mass: that of the other three units if it is left out.
     """
 
     length: float
@@ -53,29 +54,29 @@ class Units(NamedTuple):
 
     @property
     def velocity(self) -> float:
-        """omega_1 L [m/s]."""
+        """Unit of velocity, omega_1 L [m/s]."""
         return self.length / self.time
 
     @property
     def energy(self) -> float:
-        """K_1 L^2 [J]."""
+        """Unit of energy, K_1 L^2 [J]."""
         return self.force * self.length
 
     def of(self, dimension: Dimension) -> float:
-        """The unit of a number of this dimension."""
+        """Return the unit of a number of this dimension."""
         if dimension == UNBALANCE and not math.isnan(self.mass):
             return self.mass * self.length
         return self.force**dimension.force * self.length**dimension.length * self.time**dimension.time
 
     def scaled(self, value: float, dimension: Dimension) -> float:
-        """A number in SI units made nondimensional."""
+        """Return a number in SI units made nondimensional."""
         if dimension == FREQUENCY:
             return value * self.time
         return value / (self.velocity if dimension == VELOCITY else self.of(dimension))
 
 
 def scaled_parameters(record: Record, scales: Units) -> dict[str, float | tuple[float, ...]]:
-    """The parameters of a law that have a dimension, made nondimensional."""
+    """Return the parameters of a law that have a dimension, made nondimensional."""
     values = {
         name: (getattr(record, name), scales.of(unit)) for name, unit in dimensions(type(record)).items()
     }
@@ -88,9 +89,10 @@ def _divide(value: float | tuple[float, ...], unit: float) -> float | tuple[floa
 
 @lru_cache(maxsize=4096)  # the rows of a curve share their law
 def scaled_law(law: _RecordT, scales: Units) -> _RecordT:
-    """A law given in SI units, converted to the lengths and times of a scene.
+    """Return a law given in SI units, converted to the lengths and times of a scene.
 
-    The bounds of its parameters are those of the numbers given. Raises OverflowError for a number without size.
+    The bounds of its parameters are those of the numbers given. Raises OverflowError for a number that
+    becomes zero or infinite.
     """
     parameters = scaled_parameters(law, scales)
     for name, value in parameters.items():
@@ -100,7 +102,7 @@ def scaled_law(law: _RecordT, scales: Units) -> _RecordT:
 
 
 def _has_size(value: float | tuple[float, ...], given: Any) -> bool:
-    """Whether each converted number is finite, and zero only where the one given is."""
+    """Check whether each converted number is finite, and zero only if the one given is."""
     if isinstance(value, tuple):
         return all(_has_size(*pair) for pair in zip(value, given, strict=True))
     return math.isfinite(value) and (value != 0.0 or given == 0.0)
@@ -109,23 +111,23 @@ def _has_size(value: float | tuple[float, ...], given: Any) -> bool:
 SPRING = "stiffness_N_per_m", "natural_frequency_rad_per_s"
 DASHPOT = "damping_N_s_per_m", "damping_ratio"
 SWINGS = "velocity_amplitude_m_per_s", "displacement_amplitude_m", "acceleration_amplitude_m_per_s2"
-"""Names of one and the same thing, of which a part gives one."""
+"""Names of the same quantity, of which a part gives one."""
 
 
 def stiffness_of(part: Any, mass: float) -> float:
-    """K of a spring [N/m], M omega^2 of a natural frequency."""
+    """Compute the stiffness [N/m]: K of a spring, M omega^2 of a natural frequency."""
     given = part.stiffness_N_per_m
     return float(mass * part.natural_frequency_rad_per_s**2 if given is None else given)
 
 
 def time_of(part: Any, mass: float) -> float:
-    """1/omega [s] of the undamped mass on its spring."""
+    """Compute 1/omega [s] of the undamped mass on its spring."""
     given = part.stiffness_N_per_m
     return 1.0 / float(part.natural_frequency_rad_per_s) if given is None else math.sqrt(mass / given)
 
 
 def damping_ratio_of(part: Any, mass: float) -> float:
-    """C/(2 sqrt(K M)) of a dashpot."""
+    """Compute the damping ratio C/(2 sqrt(K M)) of a dashpot."""
     given = part.damping_N_s_per_m
     if given is None:
         return float(part.damping_ratio)
@@ -133,7 +135,7 @@ def damping_ratio_of(part: Any, mass: float) -> float:
 
 
 def velocity_of(shaking: Any, frequency: float) -> float:
-    """The velocity amplitude [m/s] of what shakes at this circular frequency."""
+    """Compute the velocity amplitude [m/s] of an oscillation at this circular frequency."""
     velocity, displacement, acceleration = (getattr(shaking, name) for name in SWINGS)
     if velocity is not None:
         return float(velocity)
@@ -141,10 +143,10 @@ def velocity_of(shaking: Any, frequency: float) -> float:
 
 
 def own_length(scene: Any) -> float:
-    """The length that scales a scene [m] that gives none: the largest amplitude without friction.
+    """Compute the length [m] that scales a scene that gives none: the largest amplitude without friction.
 
-    Of each load, of the belt's vibration and of a prescribed slip as a sine of its size; normal load over stiffness
-    where none has a size, of a prescribed slip 1 m.
+    Amplitudes are those of each load, and of the belt's vibration and a prescribed slip as a sine of its
+    size. If none has a size the length is normal load over stiffness, of a prescribed slip 1 m.
     """
     return max((each for each in _amplitudes(scene) if 0.0 < each < math.inf), default=_at_rest(scene))
 
@@ -169,7 +171,7 @@ def _amplitudes(scene: Any) -> Iterator[float]:
 
 
 def _compliance(scene: Any, part: Any, omega: float) -> float:
-    """Amplitude per force without friction [m/N]; that at rest for an undamped mass at resonance."""
+    """Compute amplitude per force without friction [m/N]; that at rest for an undamped mass at resonance."""
     if scene.table is not None:
         return float(abs(scene.table.receptance(np.array([omega]))[0]))
     mass = scene.mass_kg

@@ -1,7 +1,8 @@
-"""What changes in time otherwise than as one sine: its numbers, and one array of them for kernels.
+"""Excitations other than one sine: their numbers, and one array of them for kernels.
 
-An array of numba's is seven numbers and counts references: a dozen of them in a record that every function is handed
-make a kernel compile for minutes. Kernels hold a bare pointer, and the few numbers of the piece that holds.
+An array of numba's is seven numbers and counts references: a dozen of them in a record that every function
+receives make a kernel compile for minutes. Kernels therefore hold a bare pointer, and the few numbers of the
+current piece.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from frictionlab.values.quantities import Floats
 
 
 class Waves(NamedTuple):
-    """Sum of sine[j]*sin(frequency[j] tau) + cosine[j]*cos(frequency[j] tau), along x1 and x2 as x1 + i x2."""
+    """Sum of sine[j]*sin(frequency[j] tau) + cosine[j]*cos(frequency[j] tau), as x1 + i x2."""
 
     frequency: Floats
     sine: Any
@@ -24,9 +25,10 @@ class Waves(NamedTuple):
 
 
 class Function(NamedTuple):
-    """A function of time, smooth in every piece: waves, and lines [pieces], their values where it begins and slopes.
+    """Function of time, smooth in every piece: waves and lines.
 
-    Along x1 and x2 as x1 + i x2, a normal load real.
+    lines, slopes [pieces]: values of the lines at the start of each piece, and their slopes.
+    Values are x1 + i x2, those of a normal load real.
     """
 
     waves: Waves
@@ -34,19 +36,19 @@ class Function(NamedTuple):
     slopes: Any
 
     def scaled(self, factor: float) -> Function:
-        """So many times it."""
+        """Return the function times a factor."""
         frequency, sine, cosine = self.waves
         waves = Waves(frequency, factor * sine, factor * cosine)
         return Function(waves, factor * self.lines, factor * self.slopes)
 
 
 class Varying(NamedTuple):
-    """What changes in time otherwise than as one sine, in pieces between corners of any of its functions.
+    """Excitations other than one sine, in pieces between corners of any of their functions.
 
-    Beyond the ends of a piece every function goes on as within.
-    edges [pieces + 1]: from 0 to the common period. periods: of the drive in a common period. quickest: the highest
-    frequency of any wave, at least that of the drive. belt_swing: the largest velocity of the belt's vibration.
-    constant_contact: whether bristles keep the stiffness of the mean normal load.
+    Beyond the ends of a piece every function continues as within it. edges [pieces + 1]: ends of the pieces,
+    from 0 to the common period. periods: number of periods of the drive in a common period. quickest: highest
+    frequency of any wave, at least that of the drive. belt_swing: largest velocity of the belt's vibration.
+    constant_contact: true if bristles keep the stiffness of the mean normal load.
     """
 
     load: Function
@@ -60,7 +62,7 @@ class Varying(NamedTuple):
 
 
 def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Varying:
-    """The numbers of signals; frequency: of the drive."""
+    """Return the numbers of signals; ``frequency`` is that of the drive."""
     edges = signals.edges()
     every = (*signals.load, *signals.belt, signals.normal_load)
     quickest = max((wave.frequency for each in every for wave in each.waves), default=frequency)
@@ -77,7 +79,7 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
 
 
 def _function(pair: tuple[Signal, Signal], edges: Floats) -> Function:
-    """Of its parts along x1 and x2."""
+    """Return the function of time of a signal along x1 and one along x2."""
     along, across = pair
     waves = [(each.frequency, each.phasor, 0j) for each in along.waves]
     waves += [(each.frequency, 0j, each.phasor) for each in across.waves]
@@ -93,14 +95,19 @@ def _function(pair: tuple[Signal, Signal], edges: Floats) -> Function:
 
 
 PER_WAVE = 5
-"""Frequency, real and imaginary part of the sine's factor and of the cosine's."""
+"""Count of numbers per wave: frequency, real and imaginary part of the sine's factor and of the cosine's."""
 PER_PIECE = 10
-"""Value and slope, real and imaginary, of the load and of the belt; value and slope of the normal load."""
+"""Count of numbers per piece.
+
+They are value and slope, real and imaginary, of load and belt; value and slope of the normal load."""
 
 
 class Course(NamedTuple):
-    """One function of time: so many waves from this place of the table on, and a line with this value where the piece
-    begins and this slope; numbers are real on the line and x1 + i x2 in the plane."""
+    """Function of time in a piece: its waves and its line.
+
+    The waves are ``terms`` many from place ``first`` of the table. The line has this value at the start of
+    the piece and this slope. Numbers are real on the line and x1 + i x2 in the plane.
+    """
 
     first: int
     terms: int
@@ -109,8 +116,11 @@ class Course(NamedTuple):
 
 
 class Whole(NamedTuple):
-    """What is the same in every piece: where in the table the numbers of the pieces (lines) and their ends (edges)
-    are, how many pieces there are, and of ``Varying`` the periods, quickest and belt_swing."""
+    """Numbers that are the same in every piece.
+
+    lines, edges: places in the table of the numbers of the pieces and of their ends. pieces: their count.
+    periods, quickest, belt_swing: as in ``Varying``.
+    """
 
     lines: int
     edges: int
@@ -121,11 +131,11 @@ class Whole(NamedTuple):
 
 
 class Packed(NamedTuple):
-    """``Varying`` for kernels; begins: when the piece that holds does.
+    """``Varying`` for kernels; begins: start of the current piece.
 
-    keeps_stiffness: filled where the contact does while the normal load changes, a type of its own for kernels.
-    table: an array, in kernels a pointer to its items: the waves of the load, the belt and the normal load, then the
-    numbers of every piece, then their ends.
+    keeps_stiffness: filled if the contact keeps its stiffness while the normal load changes, a type of its
+    own for kernels. table: an array, in kernels a pointer to its items: the waves of the load, the belt and
+    the normal load, then the numbers of every piece, then their ends.
     """
 
     table: Any
@@ -138,7 +148,7 @@ class Packed(NamedTuple):
 
 
 def packed(varying: Any, planar: bool) -> Any:
-    """The table of what varies; nothing where nothing does."""
+    """Return the table of everything that varies; empty if nothing does."""
     if not isinstance(varying, Varying):
         return varying
     functions = varying.load, varying.belt, varying.normal_load

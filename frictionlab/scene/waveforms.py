@@ -1,7 +1,7 @@
-"""The shape in time of a load, a slip, a belt's vibration or a normal load, and frequencies in whole numbers.
+"""Waveforms of a load, a slip, a belt's vibration or a normal load, and frequencies in whole numbers.
 
-A waveform with a name is one record in ``WAVE_SHAPES``; signals, proofs, closed forms and the
-report read all of it there.
+A waveform with a name is one record in ``WAVE_SHAPES``; signals, proofs, closed forms and the report read all
+of it there.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import BeforeValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
 
 MOST_TERMS = 64
-"""Of a sum of harmonics, and the largest order among them."""
+"""Largest number of terms in a sum of harmonics, and the largest order among them."""
 LONGEST_COMMON = 64
-"""Periods of the drive after which everything must have repeated."""
+"""Number of periods of the drive after which everything must have repeated."""
 LARGEST_RATIO = 1000
-"""Of a frequency to the drive's."""
+"""Largest ratio of a frequency to the drive's."""
 
 
 class WaveLine(NamedTuple):
-    """A straight part of a waveform: where it begins [turns, from 0 to below 1], its value there, slope per turn."""
+    """Straight part of a waveform: start [turns, from 0 to below 1], value there, slope per turn."""
 
     start: Fraction
     value: int
@@ -32,9 +32,10 @@ class WaveLine(NamedTuple):
 
 
 class WaveShape(NamedTuple):
-    """A waveform with a name, for theta = 2 pi turns.
+    """Waveform with a name, for theta = 2 pi turns.
 
-    formula: in theta. words: of it in a sentence. lines: between its corners, in order; none for the sine.
+    formula: in theta. words: its name in a sentence. lines: those between its corners, in order; none for the
+    sine.
     """
 
     formula: str
@@ -63,14 +64,14 @@ WAVE_SHAPES = {
 
 
 class Term(NamedTuple):
-    """amplitude*sin(order*theta + phase), phase in degrees."""
+    """Sine in a sum of harmonics: amplitude*sin(order*theta + phase), phase in degrees."""
 
     order: int
     amplitude: float
     phase: float
 
     def __str__(self) -> str:
-        """The term as a formula: 0.5 sin(3 theta + 90 deg)."""
+        """Return the term as a formula: 0.5 sin(3 theta + 90 deg)."""
         size = "" if self.amplitude == 1.0 else f"{_short(self.amplitude)} "
         angle = "theta" if self.order == 1 else f"{self.order} theta"
         shift = f" + {_short(self.phase)} deg" if self.phase else ""
@@ -78,51 +79,51 @@ class Term(NamedTuple):
 
 
 def _short(number: float) -> str:
-    """A number that reads back the same."""
+    """Return a number as text that reads back the same."""
     return repr(number).removesuffix(".0")
 
 
 class Form(NamedTuple):
-    """A shape by its name, or a sum of harmonics."""
+    """Waveform: a shape by its name, or a sum of harmonics."""
 
     shape: str
     terms: tuple[Term, ...] = ()
 
     @staticmethod
     def given_as() -> str:
-        """The types of what it is made of, for signatures."""
+        """Return the types of the values it is made of, for signatures."""
         return "str | dict"
 
     def __repr__(self) -> str:
-        """As one would type it: 'square', or the mapping of its harmonics."""
+        """Return the form as one would type it: 'square', or the mapping of its harmonics."""
         return repr(self.plain())
 
     def plain(self) -> Any:
-        """As a study gives it."""
+        """Return the form as a study gives it."""
         return {"harmonics": [term._asdict() for term in self.terms]} if self.terms else self.shape
 
     def __str__(self) -> str:
-        """In one cell of a table: the name, or the sum as a formula."""
+        """Return the form for one cell of a table: the name, or the sum as a formula."""
         return " + ".join(map(str, self.terms)) if self.terms else self.shape
 
     @property
     def words(self) -> str:
-        """In a sentence."""
+        """Words for it in a sentence."""
         return str(self) if self.terms else WAVE_SHAPES[self.shape].words
 
     @property
     def lines(self) -> tuple[WaveLine, ...]:
-        """The straight lines between its corners; none where it is a sum of sines."""
+        """Straight lines between its corners; none if it is a sum of sines."""
         return () if self.terms else WAVE_SHAPES[self.shape].lines
 
     @property
     def waves(self) -> tuple[Term, ...]:
-        """The sines it is a sum of; none where it is straight between corners."""
+        """Sines that it is a sum of; none if it is straight between corners."""
         return self.terms or (() if self.lines else (Term(1, 1.0, 0.0),))
 
     @property
     def ends(self) -> tuple[tuple[Fraction, Fraction], ...]:
-        """Of each line how long it is [turns], and the value at its end."""
+        """Length [turns] and value at the end of each line."""
         following = [*self.lines[1:], *(line._replace(start=line.start + 1) for line in self.lines[:1])]
         lengths = [after.start - line.start for line, after in zip(self.lines, following, strict=True)]
         values = (line.value + line.slope * length for line, length in zip(self.lines, lengths, strict=True))
@@ -130,13 +131,13 @@ class Form(NamedTuple):
 
     @property
     def jumps(self) -> bool:
-        """Whether its value does, at a corner."""
+        """True if its value jumps at a corner."""
         following = self.lines[1:] + self.lines[:1]
         return any(end != after.value for (_, end), after in zip(self.ends, following, strict=True))
 
     @property
     def antisymmetric(self) -> bool:
-        """Whether it is its own opposite half a period later."""
+        """True if it is its own opposite half a period later."""
         opposite = {((each.start + Fraction(1, 2)) % 1, -each.value, -each.slope) for each in self.lines}
         return opposite == {*self.lines} and all(term.order % 2 == 1 for term in self.waves)
 
@@ -145,7 +146,7 @@ _TERM = re.compile(r"(?:(\S+) )?sin\((?:(\d+) )?theta(?: \+ (\S+) deg)?\)")
 
 
 def told(text: str) -> Form:
-    """The form that a cell of a table tells, a name or a formula. Raises ValueError."""
+    """Return the form that the text in a cell of a table names or writes as a formula. Raises ValueError."""
     terms = [Term(int(b or 1), float(a or 1.0), float(c or 0.0)) for a, b, c in _TERM.findall(text)]
     return Form("harmonics", tuple(terms)) if terms else form_of(text)
 
@@ -154,9 +155,10 @@ SINE = Form("sine")
 
 
 def form_of(value: Any) -> Form:
-    """The waveform that a study gives so.
+    """Return the waveform of a value in a study.
 
-    Raises ValueError for what is neither a shape nor a sum of harmonics, with the path of what is wrong in it.
+    Raises ValueError for a value that is neither a shape nor a sum of harmonics, with the path of the mistake
+    in it.
     """
     if isinstance(value, Form):
         return value
@@ -244,12 +246,15 @@ Waveform = Annotated[Form, PlainValidator(form_of), PlainSerializer(Form.plain),
 
 
 def as_fraction(ratio: float) -> Fraction:
-    """The fraction of small whole numbers that a ratio of frequencies is."""
+    """Return the fraction of small whole numbers that a ratio of frequencies is."""
     return Fraction(ratio).limit_denominator(LONGEST_COMMON)
 
 
 def _ratio(value: Any) -> float:
-    """Of numbers and of texts such as 3/2. Raises ValueError where it is no ratio of small whole numbers."""
+    """Return the ratio that a number, or a text such as 3/2, is.
+
+    Raises ValueError if it is no ratio of small whole numbers.
+    """
     wanted = (
         f"must be p/q in whole numbers, q at most {LONGEST_COMMON} and p/q from 1/{LONGEST_COMMON} to "
         f'{LARGEST_RATIO}, such as 2, 0.5 or "3/2"'
@@ -280,4 +285,4 @@ Ratio = Annotated[
         }
     ),
 ]
-"""A frequency in shares of the drive's, p/q."""
+"""Frequency as a multiple of the drive's, p/q."""

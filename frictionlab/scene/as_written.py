@@ -134,7 +134,7 @@ def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tup
     """Yield values by the paths of the fields they are for."""
     for path, value in changes.items():
         field = field_path(record, path)
-        key, name = (each.rpartition(".")[2] for each in (path, field))
+        key, name = (text.rpartition(".")[2] for text in (path, field))
         yield field, value if key == name else in_si(key, name, value)
 
 

@@ -98,8 +98,8 @@ class TabulatedBody:
 
         Its mass is in the new units already.
         """
-        values = tuple(receptance_unit * each for each in self.values)
-        return TabulatedBody(tuple(frequency_unit * each for each in self.frequency), values, self.mass)
+        values = tuple(receptance_unit * value for value in self.values)
+        return TabulatedBody(tuple(frequency_unit * omega for omega in self.frequency), values, self.mass)
 
     def halved(self) -> TabulatedBody:
         """Return the body with every other row of the table, the last one kept."""
@@ -125,7 +125,7 @@ def _cubic(nodes: Floats, values: ComplexValues, at: Floats) -> tuple[ComplexVal
     """
     count = min(4, len(nodes))
     first = np.clip(np.searchsorted(nodes, at) - 2, 0, len(nodes) - count)
-    x, y = (each[first[:, None] + np.arange(count)] for each in (nodes, values))
+    x, y = (numbers[first[:, None] + np.arange(count)] for numbers in (nodes, values))
     whole = _lagrange(x, y, at)
     farthest = np.abs(x - at[:, None]).argmax(axis=1)
     kept = np.arange(count) != farthest[:, None]

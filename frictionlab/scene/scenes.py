@@ -33,8 +33,8 @@ class Scenes(Sequence[Scene]):
         """Make it of these scenes, at least one, which differ in belt speed alone."""
         if isinstance(scenes, Scenes):
             return scenes
-        si = [each.dimensional.belt_speed_m_per_s for each in scenes if each.dimensional is not None]
-        return cls(scenes[0], np.array(si or [each.belt_speed for each in scenes], dtype=np.float64))
+        si = [scene.dimensional.belt_speed_m_per_s for scene in scenes if scene.dimensional is not None]
+        return cls(scenes[0], np.array(si or [scene.belt_speed for scene in scenes], dtype=np.float64))
 
     @property
     def belt_speeds(self) -> Floats:
@@ -72,5 +72,5 @@ class Scenes(Sequence[Scene]):
 def belt_speeds_of(scenes: Sequence[Scene]) -> Floats:
     """Return the belt speed of each scene [scene velocity]."""
     return (
-        scenes.belt_speeds if isinstance(scenes, Scenes) else np.array([each.belt_speed for each in scenes])
+        scenes.belt_speeds if isinstance(scenes, Scenes) else np.array([scene.belt_speed for scene in scenes])
     )

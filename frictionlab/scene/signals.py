@@ -60,23 +60,23 @@ class Signal(NamedTuple):
     def __call__(self, tau: ArrayLike) -> Floats:
         """Compute the value at these times; at a jump that after it."""
         at = np.asarray(tau, dtype=np.float64)
-        total = sum((each.at(at)[0] for each in self.pieces), np.zeros(at.shape))
-        return sum((_wave(each, at) for each in self.waves), total)
+        total = sum((piece.at(at)[0] for piece in self.pieces), np.zeros(at.shape))
+        return sum((_wave(wave, at) for wave in self.waves), total)
 
     def lines_at(self, tau: Floats) -> tuple[Floats, Floats]:
         """Compute value and slope of the lines alone."""
         nothing = np.zeros(tau.shape)
-        found = [each.at(tau) for each in self.pieces]
+        found = [piece.at(tau) for piece in self.pieces]
         return sum((value for value, _ in found), nothing), sum((slope for _, slope in found), nothing)
 
     def scaled(self, factor: float) -> Signal:
         """Return the signal times a factor; an empty signal for a factor of zero."""
         if factor == 0.0:
             return Signal()
-        waves = tuple(Wave(each.frequency, factor * each.phasor) for each in self.waves)
+        waves = tuple(Wave(wave.frequency, factor * wave.phasor) for wave in self.waves)
         pieces = tuple(
-            Segments(each.period, tuple(Segment(a, factor * b, factor * c) for a, b, c in each.lines))
-            for each in self.pieces
+            Segments(piece.period, tuple(Segment(a, factor * b, factor * c) for a, b, c in piece.lines))
+            for piece in self.pieces
         )
         return Signal(waves, pieces)
 
@@ -87,26 +87,26 @@ class Signal(NamedTuple):
     def corners(self, end: float) -> list[float]:
         """Return its corners in [0, end)."""
         found = (
-            line.start + k * each.period
-            for each in self.pieces
-            for line in each.lines
-            for k in range(round(end / each.period) + 1)
+            line.start + k * piece.period
+            for piece in self.pieces
+            for line in piece.lines
+            for k in range(round(end / piece.period) + 1)
         )
         return sorted(tau for tau in found if tau < end)
 
     def between(self, tau: Floats) -> Floats:
         """Compute the value at rising times from one corner to the next; at both ends that between them."""
         middle = 0.5 * (tau[0] + tau[-1])
-        value, slope = (float(each[0]) for each in self.lines_at(np.array([middle])))
-        return sum((_wave(each, tau) for each in self.waves), value + slope * (tau - middle))
+        value, slope = (float(numbers[0]) for numbers in self.lines_at(np.array([middle])))
+        return sum((_wave(wave, tau) for wave in self.waves), value + slope * (tau - middle))
 
     def reaches_beyond(self, frequency: float) -> bool:
         """Check whether any of its harmonics is above this frequency."""
-        return bool(self.pieces) or any(each.frequency > frequency for each in self.waves)
+        return bool(self.pieces) or any(wave.frequency > frequency for wave in self.waves)
 
     def harmonic(self, frequency: float, end: float) -> complex:
         """Compute the phasor of its harmonic of this frequency, over a period ``end`` of everything."""
-        total = sum((each.phasor for each in self.waves if math.isclose(each.frequency, frequency)), 0j)
+        total = sum((wave.phasor for wave in self.waves if math.isclose(wave.frequency, frequency)), 0j)
         edges = [0.0, *self.corners(end), end]
         for start, stop in itertools.pairwise(edges):
             if stop > start:
@@ -118,7 +118,7 @@ class Signal(NamedTuple):
         if not self.pieces and len(self.waves) <= 1:
             size = abs(self.waves[0].phasor) if self.waves else 0.0
             return -size, size
-        quickest = max((each.frequency for each in self.waves), default=0.0)
+        quickest = max((wave.frequency for wave in self.waves), default=0.0)
         edges = [0.0, *self.corners(end), end]
         low, high = math.inf, -math.inf
         for start, stop in itertools.pairwise(edges):
@@ -148,7 +148,7 @@ def highest(values: Floats) -> float:
 def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: float) -> complex:
     """Compute the integral of the lines times i exp(-i frequency tau), between two corners."""
     middle = 0.5 * (start + stop)
-    value, slope = (float(each[0]) for each in signal.lines_at(np.array([middle])))
+    value, slope = (float(numbers[0]) for numbers in signal.lines_at(np.array([middle])))
     half, turn = 0.5 * frequency * (stop - start), cmath.exp(-1j * frequency * middle)
     even = 2.0 * math.sin(half) / frequency
     odd = -2j * (math.sin(half) - half * math.cos(half)) / frequency**2
@@ -160,9 +160,9 @@ def signal_of(form: Form, frequency: float, phase: float) -> Signal:
     start, period = math.radians(phase), FULL_TURN / frequency
     waves = tuple(
         Wave(
-            each.order * frequency, cmath.rect(each.amplitude, math.radians(each.phase) + each.order * start)
+            term.order * frequency, cmath.rect(term.amplitude, math.radians(term.phase) + term.order * start)
         )
-        for each in form.waves
+        for term in form.waves
     )
     lines = sorted(
         Segment(
@@ -203,7 +203,7 @@ class Signals(NamedTuple):
         """Return the times in [0, period) of all corners; times a rounding error apart are one."""
         every = (*self.load, *self.belt, self.normal_load)
         found: list[float] = []
-        for tau in sorted({tau for each in every for tau in each.corners(self.period)}):
+        for tau in sorted({tau for signal in every for tau in signal.corners(self.period)}):
             if not found or tau - found[-1] > 1e-13 * self.period:
                 found.append(tau)
         return found

@@ -84,7 +84,7 @@ def scaled_parameters(record: Record, scales: Units) -> dict[str, float | tuple[
 
 
 def _divide(value: float | tuple[float, ...], unit: float) -> float | tuple[float, ...]:
-    return tuple(each / unit for each in value) if isinstance(value, tuple) else value / unit
+    return tuple(number / unit for number in value) if isinstance(value, tuple) else value / unit
 
 
 @lru_cache(maxsize=4096)  # the rows of a curve share their law
@@ -148,7 +148,9 @@ def own_length(scene: Any) -> float:
     Amplitudes are those of each load, and of the belt's vibration and a prescribed slip as a sine of its
     size. If none has a size the length is normal load over stiffness, of a prescribed slip 1 m.
     """
-    return max((each for each in _amplitudes(scene) if 0.0 < each < math.inf), default=_at_rest(scene))
+    return max(
+        (amplitude for amplitude in _amplitudes(scene) if 0.0 < amplitude < math.inf), default=_at_rest(scene)
+    )
 
 
 def _at_rest(scene: Any) -> float:

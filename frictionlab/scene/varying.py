@@ -65,7 +65,7 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
     """Return the numbers of signals; ``frequency`` is that of the drive."""
     edges = signals.edges()
     every = (*signals.load, *signals.belt, signals.normal_load)
-    quickest = max((wave.frequency for each in every for wave in each.waves), default=frequency)
+    quickest = max((wave.frequency for signal in every for wave in signal.waves), default=frequency)
     return Varying(
         load=_function(signals.load, edges),
         belt=_function(signals.belt, edges),
@@ -73,7 +73,7 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
         edges=edges,
         periods=float(round(signals.period * frequency / (2.0 * math.pi))),
         quickest=max(quickest, frequency),
-        belt_swing=math.hypot(*(max(map(abs, each.extremes(signals.period))) for each in signals.belt)),
+        belt_swing=math.hypot(*(max(map(abs, signal.extremes(signals.period))) for signal in signals.belt)),
         constant_contact=constant_contact,
     )
 
@@ -81,9 +81,9 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
 def _function(pair: tuple[Signal, Signal], edges: Floats) -> Function:
     """Return the function of time of a signal along x1 and one along x2."""
     along, across = pair
-    waves = [(each.frequency, each.phasor, 0j) for each in along.waves]
-    waves += [(each.frequency, 0j, each.phasor) for each in across.waves]
-    frequency = np.array([each for each, _, _ in waves])
+    waves = [(wave.frequency, wave.phasor, 0j) for wave in along.waves]
+    waves += [(wave.frequency, 0j, wave.phasor) for wave in across.waves]
+    frequency = np.array([number for number, _, _ in waves])
     sine = np.array([complex(first.real, second.real) for _, first, second in waves], dtype=np.complex128)
     cosine = np.array([complex(first.imag, second.imag) for _, first, second in waves], dtype=np.complex128)
     middles = 0.5 * (edges[:-1] + edges[1:])
@@ -152,14 +152,14 @@ def packed(varying: Any, planar: bool) -> Any:
     if not isinstance(varying, Varying):
         return varying
     functions = varying.load, varying.belt, varying.normal_load
-    counts = [each.waves.frequency.size for each in functions]
+    counts = [function.waves.frequency.size for function in functions]
     ends = np.cumsum([PER_WAVE * count for count in counts]).tolist()
-    every = [part for each in functions[:2] for line in each[1:] for part in (line.real, line.imag)]
+    every = [part for function in functions[:2] for line in function[1:] for part in (line.real, line.imag)]
     lines = np.column_stack([*every, *(line.real for line in varying.normal_load[1:])])
-    table = np.concatenate([*(_rows(each.waves) for each in functions), lines.ravel(), varying.edges])
+    table = np.concatenate([*(_rows(function.waves) for function in functions), lines.ravel(), varying.edges])
     load, belt, normal = (
-        Course(end - PER_WAVE * count, count, *(_number(line[0], plane) for line in each[1:]))
-        for end, count, each, plane in zip(ends, counts, functions, (planar, planar, False), strict=True)
+        Course(end - PER_WAVE * count, count, *(_number(line[0], plane) for line in function[1:]))
+        for end, count, function, plane in zip(ends, counts, functions, (planar, planar, False), strict=True)
     )
     whole = Whole(
         lines=ends[2],

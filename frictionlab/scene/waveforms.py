@@ -138,7 +138,7 @@ class Form(NamedTuple):
     @property
     def antisymmetric(self) -> bool:
         """True if it is its own opposite half a period later."""
-        opposite = {((each.start + Fraction(1, 2)) % 1, -each.value, -each.slope) for each in self.lines}
+        opposite = {((line.start + Fraction(1, 2)) % 1, -line.value, -line.slope) for line in self.lines}
         return opposite == {*self.lines} and all(term.order % 2 == 1 for term in self.waves)
 
 
@@ -181,7 +181,7 @@ def _sum_of_harmonics(value: Mapping[str, Any]) -> Form:
         raise ValueError(f"harmonics: must be a list; {_SUM}" if "harmonics" in value else _SUM)
     if not 1 <= len(terms) <= MOST_TERMS:
         raise ValueError(f"harmonics: must be 1 to {MOST_TERMS} terms, got {len(terms)}; {_SUM}")
-    return Form("harmonics", tuple(_term(f"harmonics[{place}]", each) for place, each in enumerate(terms)))
+    return Form("harmonics", tuple(_term(f"harmonics[{place}]", term) for place, term in enumerate(terms)))
 
 
 def _term(where: str, value: Any) -> Term:

@@ -61,7 +61,7 @@ def _sources(kind: type[FrictionLaw] | type[Method]) -> list[str]:
 
 
 def _declared(law: type[FrictionLaw]) -> dict[str, str]:
-    """The predicates a law overrides, each with its docstring."""
+    """Return the predicates that a law overrides, each with its docstring up to the numpydoc sections."""
     first: dict[str, Any] = {}
     for kind in reversed(law.__mro__):
         if issubclass(kind, FrictionLaw):
@@ -69,7 +69,8 @@ def _declared(law: type[FrictionLaw]) -> dict[str, str]:
                 name: method for name, method in vars(kind).items() if _returns_a_truth_value(method)
             } | first
     own = [name for name, method in first.items() if getattr(law, name) is not method]
-    return {name: inspect.getdoc(getattr(law, name)) or "" for name in own}
+    texts = {name: inspect.getdoc(getattr(law, name)) or "" for name in own}
+    return {name: re.split(r"\n\n(?:Parameters|Returns)\n---", text)[0] for name, text in texts.items()}
 
 
 def _returns_a_truth_value(method: Any) -> bool:

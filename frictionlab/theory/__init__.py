@@ -1,6 +1,6 @@
 """Closed forms of vibrated friction, with the numbers of their equations.
 
-Velocities are in the scene's scale (omega_1 L); a mean friction is given relative to the friction coefficient
+Velocities are in the scale of the scene (omega_1 L). A mean friction is relative to the friction coefficient
 of steady sliding.
 """
 

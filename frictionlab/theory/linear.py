@@ -1,6 +1,6 @@
-"""The friction-free response of the body.
+"""Friction-free response of a linear body under loads that are sines or have corners.
 
-The slip velocity of a linear body without friction, under loads that are sines or have corners.
+Its slip velocity is computed, too.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ POINTS_OF_PANEL = 64
 
 
 class FreeSlip(NamedTuple):
-    """On a belt whose mean velocity is zero: waves, and what corners of the load bring [n, 3]: their times in [0,
-    period), by how much the load jumps there and by how much its slope does.
+    """Friction-free slip on a belt whose mean velocity is zero: waves, and the effect of corners of the load.
 
-    With V and W of theory/periodic_response.py the slip velocity is the sum of waves, jump V + bend W after every
-    corner, and ``steady``, that makes its mean zero.
+    corners [n, 3]: their times in [0, period), the jumps of the load there and those of its slope. With V and
+    W of theory/periodic_response.py the slip velocity is the sum of waves, jump V + bend W after every
+    corner, and ``steady``, which makes its mean zero.
     """
 
     waves: Signal
@@ -36,7 +36,7 @@ class FreeSlip(NamedTuple):
     response: PeriodicResponse | None
 
     def extremes(self, period: float) -> tuple[float, float]:
-        """The least and the largest value."""
+        """Return the least and the largest value."""
         of = self.response
         if of is None:
             return self.waves.extremes(period)
@@ -55,7 +55,7 @@ class FreeSlip(NamedTuple):
 
 
 def friction_free_slip(body: LinearBody, load: Signal, belt: Signal, period: float) -> FreeSlip:
-    """Of a body under this load, on a belt of this vibration."""
+    """Return the friction-free slip of a body under this load, on a belt of this vibration."""
     waves = Signal(tuple(answered(body, each, 1) for each in load.waves)).plus(belt.scaled(-1.0))
     corners = corners_of(load, period)
     if not len(corners):
@@ -66,13 +66,13 @@ def friction_free_slip(body: LinearBody, load: Signal, belt: Signal, period: flo
 
 
 def corners_of(load: Signal, period: float) -> Floats:
-    """Times in [0, period), by how much the load jumps there and by how much its slope does [n, 3]."""
+    """Return times of corners in [0, period), jumps of the load there and those of its slope [n, 3]."""
     corners = np.array([row for each in load.pieces for row in _corners(each, period)]).reshape(-1, 3)
     return np.asarray(corners[np.any(corners[:, 1:] != 0.0, axis=1)])
 
 
 def _corners(load: Segments, period: float) -> list[tuple[float, float, float]]:
-    """Their times, and by how much the load and its slope jump there."""
+    """Return the times of corners, the jumps of the load there and those of its slope."""
     rows = []
     for line, last in zip(load.lines, [load.lines[-1], *load.lines[:-1]], strict=True):
         length = math.fmod(line.start - last.start + load.period, load.period) or load.period
@@ -84,27 +84,47 @@ def _corners(load: Segments, period: float) -> list[tuple[float, float, float]]:
 
 
 def answered(body: LinearBody, wave: Wave, order: int) -> Wave:
-    """x1 under a force of this wave, or its derivative of order 1."""
+    """Return x1 under a force of this wave, or its derivative of order 1."""
     response = body.receptance(np.array([wave.frequency]))[0]
     return Wave(wave.frequency, complex((1j * wave.frequency) ** order * response * wave.phasor))
 
 
 _SINGULAR = 64.0 * EPSILON
-"""Of the determinant of what a free motion loses in a period; below it an oscillator is at undamped resonance."""
+"""Determinant of the loss of a free motion in a period, below which an oscillator is at undamped
+resonance."""
 
 
 def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> float:
-    """V_lin: the largest velocity of x1 over the belt's vibration without friction [omega_1 L].
+    """Compute V_lin, the largest velocity of x1 over the belt's vibration without friction.
 
-    The maximum over time of x1' minus the belt's vibration along x1, of the linear response to the loads and, where
-    the normal load varies, to the alternating part of the friction of steady sliding, which asks for the law; for a
-    prescribed slip that of its oscillation. On a belt that runs backward: of the opposite velocity. For one sine the
-    velocity amplitude. Infinite at undamped resonance, NaN of a body that is not linear, or whose table does not tell
-    what it answers to the load. At belt speeds above it a body of one degree of freedom under constant sliding
-    friction never reverses its slip; the curve of the mean has its kink there.
+    It is the maximum over time of x1' minus the belt's vibration along x1, of the linear response to the
+    loads. If the normal load varies, the alternating part of the friction of steady sliding acts as well, and
+    the law is needed. For a prescribed slip it is the maximum of the oscillation, for one sine the velocity
+    amplitude. On a belt that runs backward it is that of the opposite velocity. At belt speeds above V_lin a
+    body of one degree of freedom under constant sliding friction never reverses its slip; the curve of the
+    mean has its kink there.
 
-    Raises ValueError for a normal load that varies without a law.
-    Source: Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
+    Parameters
+    ----------
+    scene : Scene
+        Body, loads and belt.
+    law : FrictionLaw, optional
+        Law of friction, needed only if the normal load varies.
+
+    Returns
+    -------
+    float
+        V_lin [omega_1 L]. It is infinite at undamped resonance, and NaN for a body that is not linear or whose table
+        does not give its response to the load.
+
+    Raises
+    ------
+    ValueError
+        If the normal load varies and there is no law.
+
+    References
+    ----------
+    Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """
     if scene.bends:
         return math.nan
@@ -119,9 +139,10 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
 
 
 def velocity_scale(scene: Scene) -> float:
-    """V_lin as if the normal load did not vary: a scale of velocities that asks for no law [omega_1 L].
+    """Return V_lin for a constant normal load, a scale of velocities that needs no law [omega_1 L].
 
-    Of a body that is not linear that of one harmonic, or of its linear springs and dashpots where loads are no sine.
+    For a body that is not linear it is that of one harmonic or, where loads are no sine, that of its linear
+    springs and dashpots.
     """
     if not scene.is_harmonic:
         return _largest_slip(scene, 0.0)
@@ -134,16 +155,17 @@ def velocity_scale(scene: Scene) -> float:
 def friction_free_response(
     scene: Scene, law: FrictionLaw | None, order: int
 ) -> tuple[Piecewise, Piecewise] | None:
-    """That motion: x1 and x2 themselves, or for order 1 their velocities; None where one has no bound.
+    """Return the friction-free x1 and x2, or for order 1 their velocities; None if one has no bound.
 
-    Raises ValueError as ``friction_free_velocity``, and of a body that remembers under loads that have corners.
+    Raise ValueError as ``friction_free_velocity``, and for a body that remembers under loads that have
+    corners.
     """
     found = _response(scene, _coefficient(scene, law), order)
     return None if found[0] is None or found[1] is None else (found[0], found[1])
 
 
 def _coefficient(scene: Scene, law: FrictionLaw | None) -> float:
-    """That with which a normal load that varies pushes the body along x1 in steady sliding."""
+    """Return the coefficient with which a varying normal load pushes the body along x1 in steady sliding."""
     if scene.degrees_of_freedom == 0 or scene.signals().normal_load == Signal():
         return 0.0
     if law is None:
@@ -169,7 +191,7 @@ def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise |
 
 
 def _largest_slip(scene: Scene, coefficient: float) -> float:
-    """Of its x1' minus the belt's vibration along x1, over the period of the scene; infinite without a bound."""
+    """Return the maximum of x1' minus the belt's vibration, over a period; infinite without a bound."""
     signals = scene.signals()
     if scene.remembers:
         body, load = linear_body(scene), signals.load[0].plus(signals.normal_load.scaled(coefficient))
@@ -188,7 +210,7 @@ def _largest_slip(scene: Scene, coefficient: float) -> float:
 
 
 def less(first: Piecewise, second: Piecewise) -> Piecewise:
-    """The difference of two functions on the same pieces, the second without free motion."""
+    """Return the difference of two functions on the same pieces, the second without free motion."""
     other = second.negative()
     return first._replace(
         middle=first.middle + other.middle,
@@ -198,13 +220,13 @@ def less(first: Piecewise, second: Piecewise) -> Piecewise:
 
 
 class LinearOscillator(NamedTuple):
-    """x'' + damping x' + stiffness x = load; damping >= 0, stiffness > 0."""
+    """Oscillator x'' + damping x' + stiffness x = load, with damping >= 0, stiffness > 0."""
 
     damping: float
     stiffness: float
 
     def response(self, load: Signal, edges: Floats, order: int) -> Piecewise | None:
-        """The periodic x, or its derivative of order 1, under a load; None where it has no bound.
+        """Return the periodic x, or its derivative of order 1, under a load; None if it has no bound.
 
         edges: of pieces within which the load has no corner.
         """
@@ -229,9 +251,10 @@ class LinearOscillator(NamedTuple):
         )
 
     def _free(self, load: Segments, at: Floats) -> tuple[Floats, Floats] | None:
-        """Position and velocity at these times of the free motion that joins the responses to the lines.
+        """Return position and velocity of the free motion that joins the responses to the lines.
 
-        At every corner those jump, and the free motion the other way; in a period it loses what the jumps bring.
+        At every corner the responses jump, and the free motion jumps the other way. In a period it loses what
+        the jumps add.
         """
         lines, period, k, c = load.lines, load.period, self.stiffness, self.damping
         starts = np.array([line.start for line in lines])
@@ -250,7 +273,7 @@ class LinearOscillator(NamedTuple):
         return x, v
 
     def _flow(self, since: Floats) -> Floats:
-        """What a free motion does in so much time: the matrix from (x, v) to (x, v), on the first two axes."""
+        """Return the matrix of a free motion over this time, from (x, v) to (x, v), on the first two axes."""
         cosine, sine = oscillation(self.damping, self.stiffness, since)
         half = 0.5 * self.damping
         return np.array(

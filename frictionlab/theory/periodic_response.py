@@ -1,14 +1,14 @@
-"""What a jump of force, again in every period, does to a linear body: its response in time from that in frequency.
+"""Response in time of a linear body to a jump of force, repeated every period, from its response in frequency.
 
-V(t) = (1/T) sum over all k of H(i k Omega) exp(i k Omega t), T = 2 pi/Omega, is the position after a unit impulse of
-force in every period, and the velocity after a unit step of force at every t = 0 (but for a constant). V' jumps by
-1/mass at 0. The sum goes on to k = K one by one; the rest is closed by the formula of Abel and Plana in its midpoint
-form, c = K + 1/2, f(k) = H(i k Omega) exp(i k Omega t):
+V(t) = (1/T) sum over all k of H(i k Omega) exp(i k Omega t), T = 2 pi/Omega, is the position after a unit
+impulse of force in every period, and, up to a constant, the velocity after a unit step of force at every t =
+0. V' jumps by 1/mass at 0. The sum up to k = K is taken term by term; the rest is closed by the formula of
+Abel and Plana in its midpoint form, c = K + 1/2, f(k) = H(i k Omega) exp(i k Omega t):
 
     sum over k > K of f(k) = i integral over y > 0 of [f(c + iy) + exp(-2 pi y) f(c - iy)] / (1 + exp(-2 pi y)),
 
-in which exp(i k Omega t) decays. A body (p + lam)^-2 / mass + d (p + lam)^-3 with the same response to high
-frequencies, in closed form, is taken out first, so that what is summed up of V' is continuous.
+in which exp(i k Omega t) decays. First a body (p + lam)^-2 / mass + d (p + lam)^-3 with the same response to
+high frequencies, in closed form, is subtracted, so that the remaining part of V' is continuous.
 
 Source: Olver, Asymptotics and Special Functions (1974), section 8.3.
 """
@@ -25,12 +25,12 @@ from frictionlab.scene.receptance import ComplexValues, LinearBody
 from frictionlab.values.quantities import Floats
 
 TERMS = 16
-"""Of a panel: a sine through half a radian a side is a polynomial of 15th degree to rounding, and so is a power over
-[1/2, 1]."""
+"""Number of Chebyshev terms of a panel. A sine through half a radian a side is a polynomial of 15th degree to
+rounding, and so is a power over [1/2, 1]."""
 RADIANS_OF_PANEL = 2.5
 """Radians of the quickest free motion in a panel."""
 HALVINGS = 40
-"""Of the first panel, where the response has powers of t that are not whole numbers."""
+"""Halvings of the first panel, where the response has powers of t that are not whole numbers."""
 
 _k = np.arange(TERMS)
 _at = -np.cos(np.pi * (_k + 0.5) / TERMS)
@@ -38,7 +38,7 @@ _PLACES: Floats = 0.5 * (1.0 + _at)
 TO_CHEBYSHEV: Floats = (2.0 / TERMS * np.cos(np.outer(_k, np.arccos(_at)))) * np.where(_k == 0, 0.5, 1.0)[
     :, None
 ]
-"""From values at Chebyshev's points of a panel to coefficients."""
+"""Matrix from values at Chebyshev's points of a panel to coefficients."""
 
 _step = 0.1
 _u = np.arange(-3.4, 38.0, _step)
@@ -47,11 +47,13 @@ _WEIGHTS = _step * _y * (1.0 + np.exp(-_u)) / (1.0 + np.exp(-2.0 * np.pi * _y))
 
 
 class PeriodicResponse(NamedTuple):
-    """V', V, the integral W of V less its mean and that of W, both of mean zero, in Chebyshev polynomials of panels.
+    """V', V, the integral W of V less its mean, and that of W, in Chebyshev polynomials of panels.
 
-    Panels 0 ... panels - 1 are equally long; with halvings > 0 the first is not used, and those from ``panels`` on
-    are its right half, the right half of its left half and so on, the last one all that is left.
-    lengths: of all panels. static: x1 under a unit force at rest. error: of V'.
+    Both integrals have mean zero.
+
+    Panels 0 ... panels - 1 are equally long. With halvings > 0 the first one is not used. Those from
+    ``panels`` on are its right half, the right half of its left half and so on; the last one is all that is
+    left. lengths: of all panels. static: x1 under a unit force at rest. error: of V'.
     """
 
     period: float
@@ -66,7 +68,7 @@ class PeriodicResponse(NamedTuple):
     error: float
 
     def at(self, table: Floats, since: Floats) -> Floats:
-        """One of its tables these times in [0, period] after an impulse."""
+        """Evaluate one of the tables at these times in [0, period] after an impulse."""
         starts, _, order = _panels(self.panels, self.halvings)
         panel = order[np.searchsorted(starts[order], since / self.period, side="right") - 1]
         z = 2.0 * (since - starts[panel] * self.period) / self.lengths[panel] - 1.0
@@ -75,7 +77,7 @@ class PeriodicResponse(NamedTuple):
 
 @lru_cache(maxsize=256)
 def periodic_response(body: LinearBody, frequency: float) -> PeriodicResponse:
-    """Of forces that repeat with this circular frequency."""
+    """Return the response to forces that repeat with this circular frequency."""
     period = 2.0 * math.pi / frequency
     count = max(4, math.ceil(period * body.detail / RADIANS_OF_PANEL))
     halvings = 0 if body.smooth else HALVINGS
@@ -98,7 +100,7 @@ def periodic_response(body: LinearBody, frequency: float) -> PeriodicResponse:
 
 @lru_cache(maxsize=64)
 def _panels(count: int, halvings: int) -> tuple[Floats, Floats, Any]:
-    """Starts and lengths of all panels in shares of the period, and those that are used in the order of time."""
+    """Return starts and lengths of all panels in shares of the period, and the used ones in order of time."""
     halves = 0.5 ** np.arange(halvings + 1.0)
     starts = np.concatenate([np.arange(count), halves[1:], [0.0] * (halvings > 0)]) / count
     lengths = np.concatenate([np.ones(count), halves[1:], halves[-1:] * (halvings > 0)][: 2 + (halvings > 0)])
@@ -108,19 +110,22 @@ def _panels(count: int, halvings: int) -> tuple[Floats, Floats, Any]:
 
 
 class Reference(NamedTuple):
-    """The body (p + lam)^-2 a + d (p + lam)^-3."""
+    """Body (p + lam)^-2 a + d (p + lam)^-3."""
 
     a: float
     d: float
     lam: float
 
     def receptance(self, p: ComplexValues) -> ComplexValues:
-        """x1 over force."""
+        """Return x1 over force."""
         q = 1.0 / (p + self.lam)
         return q * q * (self.a + self.d * q)
 
     def rate(self, period: float, t: Floats) -> Floats:
-        """V' in closed form, 0 <= t <= period: the sum of responses to an impulse in every period before."""
+        """Return V' in closed form, 0 <= t <= period: the sum of responses to all earlier impulses.
+
+        There is an impulse in every period.
+        """
         lam, e = self.lam, math.exp(-self.lam * period)
         one = 1.0 / (1.0 - e)
         # Sums over m of (t + m T)^j exp(-lam m T), j = 0, 1, 2.
@@ -133,7 +138,7 @@ class Reference(NamedTuple):
 
 @lru_cache(maxsize=16)
 def _tail_factors(count: int, halvings: int) -> tuple[Floats, Floats]:
-    """exp(-y theta) and exp(-y (2 pi - theta)) [nodes, y], with the weights of the integral over y."""
+    """Return exp(-y theta) and exp(-y (2 pi - theta)) [nodes, y], with the weights of the integral over y."""
     starts, lengths, _ = _panels(count, halvings)
     theta = 2.0 * np.pi * (starts[:, None] + lengths[:, None] * _PLACES).reshape(-1, 1)
     with np.errstate(under="ignore"):
@@ -141,7 +146,7 @@ def _tail_factors(count: int, halvings: int) -> tuple[Floats, Floats]:
 
 
 def _summed(body: LinearBody, reference: Reference, frequency: float, count: int, halvings: int) -> Floats:
-    """What the harmonics of body less reference make V' at every node [panels, nodes]."""
+    """Return the share of V' of the harmonics of body less reference, at every node [panels, nodes]."""
     known = math.floor(max(body.known_to, 2.0 * reference.lam) / frequency)
     omega = frequency * np.arange(1.0, known + 1.0)
     p = 1j * omega
@@ -161,13 +166,15 @@ def _summed(body: LinearBody, reference: Reference, frequency: float, count: int
 
 
 def _sums(factors: Floats, terms: ComplexValues) -> ComplexValues:
-    """Products of a real matrix and a complex vector."""
+    """Return the product of a real matrix and a complex vector."""
     return np.asarray(factors @ terms.real + 1j * (factors @ terms.imag))
 
 
 def _primitive(rate: Floats, lengths: Floats, order: Any, mean: float) -> Floats:
-    """The continuous integral of panels of Chebyshev polynomials, with this mean over the period; one degree more is
-    left out."""
+    """Return the continuous integral of panels of Chebyshev polynomials, with this mean over the period.
+
+    The highest degree of the integral is left out.
+    """
     integrals = np.zeros_like(rate)
     n = TERMS
     k = np.arange(1, n)

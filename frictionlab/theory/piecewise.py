@@ -1,4 +1,4 @@
-"""Functions of time that are smooth between corners: where they cross a level, their largest value, integrals."""
+"""Functions of time that are smooth between corners: their zeros, largest value and integrals."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ PieceNumbers = NDArray[np.int64]
 _ROUNDING = 8.0 * EPSILON
 """Share of its size below which the value of such a function is rounding."""
 _FINEST = EPSILON
-"""Share of the period, of half an interval, from which on it is not cut: at the period's end it has no middle."""
+"""Half an interval, as share of the period, below which it is not cut: at the period's end it has no
+middle."""
 
 
 class FreeMotion(NamedTuple):
     """Free motions of an oscillator x'' + damping x' + stiffness x = 0, one on each piece.
 
-    x, v: at the beginnings of the pieces. order: which derivative of x is meant.
+    x, v: at the beginnings of the pieces. order: derivative of x that the record stands for.
     """
 
     damping: float
@@ -32,7 +33,7 @@ class FreeMotion(NamedTuple):
     order: int
 
     def derivatives(self, since: Floats, k: PieceNumbers) -> tuple[Floats, Floats]:
-        """The derivative of this order and the next, so long after the piece k has begun."""
+        """Return the derivative of this order and the next one, at times since the start of the pieces k."""
         cosine, sine = oscillation(self.damping, self.stiffness, since)
         x0, v0, half = self.x[k], self.v[k], 0.5 * self.damping
         x = x0 * (cosine + half * sine) + v0 * sine
@@ -43,13 +44,16 @@ class FreeMotion(NamedTuple):
         return found[self.order], found[self.order + 1]
 
     def curvature(self) -> Floats:
-        """A bound on the second derivative of what is meant, on each piece: the energy never grows."""
+        """Return a bound on the second derivative of the function, on each piece: the energy never grows."""
         swing = np.sqrt(self.stiffness * self.x**2 + self.v**2)
         return swing * (math.sqrt(self.stiffness) + self.damping) ** (self.order + 1)
 
 
 def oscillation(damping: float, stiffness: float, since: Floats) -> tuple[Floats, Floats]:
-    """exp(-damping/2 t) times cosine and sine/frequency of the damped oscillation; of hyperbolic ones beyond."""
+    """Return exp(-damping/2 t) times cosine, and times sine/frequency, of the damped oscillation.
+
+    For an overdamped oscillator these are the hyperbolic functions.
+    """
     half = 0.5 * damping
     square = stiffness - half**2
     frequency = math.sqrt(abs(square))
@@ -64,9 +68,9 @@ def oscillation(damping: float, stiffness: float, since: Floats) -> tuple[Floats
 
 
 class Piecewise(NamedTuple):
-    """Waves, on each piece a straight line, and a free motion.
+    """Sum of waves, a straight line on each piece, and a free motion.
 
-    edges [n + 1]: from 0 to the period. middle, slope [n]: of the lines, their values half way.
+    edges [n + 1]: from 0 to the period. middle, slope [n]: of the lines, with their values half way.
     """
 
     edges: Floats
@@ -77,11 +81,14 @@ class Piecewise(NamedTuple):
 
     @property
     def period(self) -> float:
-        """Where the last piece ends."""
+        """Period: the end of the last piece."""
         return float(self.edges[-1])
 
     def at(self, tau: Floats, k: PieceNumbers) -> tuple[Floats, Floats]:
-        """Value and derivative at times on the pieces k; a piece goes on smoothly beyond its ends."""
+        """Return value and derivative at times on the pieces k.
+
+        A piece continues smoothly beyond its ends.
+        """
         slope = self.slope[k]
         value = self.middle[k] + slope * (tau - 0.5 * (self.edges[k] + self.edges[k + 1]))
         for frequency, phasor in self.waves:
@@ -95,12 +102,12 @@ class Piecewise(NamedTuple):
         return value, slope
 
     def curvature(self) -> Floats:
-        """A bound on the second derivative on each piece."""
+        """Return a bound on the second derivative on each piece."""
         bound = np.full(len(self.middle), sum(each.frequency**2 * abs(each.phasor) for each in self.waves))
         return bound if self.free is None else bound + self.free.curvature()
 
     def size(self) -> float:
-        """A bound on its magnitude, the scale of rounding."""
+        """Return a bound on the magnitude of the function, the scale of rounding."""
         half = 0.5 * np.diff(self.edges)
         bound = np.abs(self.middle) + np.abs(self.slope) * half
         if self.free is not None:
@@ -110,7 +117,7 @@ class Piecewise(NamedTuple):
         return float(bound.max()) + sum(abs(each.phasor) for each in self.waves)
 
     def integral(self, start: Floats, stop: Floats, k: PieceNumbers) -> Floats:
-        """Of waves and lines, between two times on the pieces k."""
+        """Return the integral of waves and lines between two times on the pieces k."""
         middle, length = 0.5 * (start + stop), stop - start
         total = length * (
             self.middle[k] + self.slope[k] * (middle - 0.5 * (self.edges[k] + self.edges[k + 1]))
@@ -122,17 +129,20 @@ class Piecewise(NamedTuple):
         return np.asarray(total)
 
     def minus(self, level: float) -> Piecewise:
-        """It less a constant."""
+        """Return the function less a constant."""
         return self._replace(middle=self.middle - level)
 
     def negative(self) -> Piecewise:
-        """Minus it."""
+        """Return the negative of the function."""
         free = self.free and self.free._replace(x=-self.free.x, v=-self.free.v)
         waves = tuple(Wave(each.frequency, -each.phasor) for each in self.waves)
         return Piecewise(self.edges, -self.middle, -self.slope, waves, free)
 
     def maximum(self) -> float:
-        """The largest value, to rounding: intervals that cannot hold it are dropped, the others cut in two."""
+        """Return the largest value, to rounding.
+
+        Intervals that cannot hold it are dropped, the others cut in two.
+        """
         k = np.arange(len(self.middle))
         start, stop, curvature = self.edges[:-1], self.edges[1:], self.curvature()
         best, rounding = -math.inf, _ROUNDING * self.size()
@@ -147,12 +157,15 @@ class Piecewise(NamedTuple):
         return best
 
     def at_rest(self) -> NDArray[np.bool_]:
-        """On which pieces it is zero throughout."""
+        """Mark the pieces on which the function is zero throughout."""
         still = (self.slope == 0.0) & (self.curvature() == 0.0)
         return still & (np.abs(self.middle) <= _ROUNDING * self.size()) if still.any() else still
 
     def crossings(self) -> Crossings:
-        """Where it crosses zero: intervals that cannot hold a zero are dropped, the others cut in two."""
+        """Return the places where the function crosses zero.
+
+        Intervals that cannot hold a zero are dropped, the others cut in two.
+        """
         if len(self.waves) == 1 and self.free is None and not self.slope.any() and np.ptp(self.middle) == 0.0:
             return self._crossings_of_a_sine()
         k = np.flatnonzero(~self.at_rest())
@@ -171,7 +184,10 @@ class Piecewise(NamedTuple):
         return found
 
     def _crossings_of_a_sine(self) -> Crossings:
-        """Of a constant and one sine, in closed form: near its turning points a rounded zero is half as exact."""
+        """Return the zeros of a constant plus one sine, in closed form.
+
+        Near the turning points of the sine a zero found from rounded values would be half as exact.
+        """
         (frequency, phasor), level = self.waves[0], float(self.middle[0])
         size, far = abs(phasor), abs(level)
         if far >= size:
@@ -185,7 +201,7 @@ class Piecewise(NamedTuple):
         return Crossings(tau, np.full(len(tau), unsure))
 
     def _roots(self, start: Floats, stop: Floats, k: PieceNumbers, rounding: float) -> Crossings:
-        """Where it passes through zero in each of these intervals, on which it rises or falls throughout."""
+        """Return the zero in each of these intervals, on which the function rises or falls throughout."""
         first, last = self.at(start, k)[0], self.at(stop, k)[0]
         inside = (first < 0.0) != (last < 0.0)
         low, high, k, rises = start[inside], stop[inside], k[inside], (last > first)[inside]
@@ -204,26 +220,26 @@ class Piecewise(NamedTuple):
 
 
 class Crossings(NamedTuple):
-    """Where a function crosses zero, and how far off each may be because its values are rounded."""
+    """Zeros of a function, and the error of each because the values of the function are rounded."""
 
     tau: Floats
     unsure: Floats
 
     def plus(self, other: Crossings) -> Crossings:
-        """Both."""
+        """Return the zeros of both."""
         return Crossings(*(np.concatenate(pair) for pair in zip(self, other, strict=True)))
 
 
 def _halves(
     start: Floats, stop: Floats, k: PieceNumbers, which: NDArray[np.bool_]
 ) -> tuple[Floats, Floats, PieceNumbers]:
-    """Both halves of each of these intervals."""
+    """Return both halves of each of these intervals."""
     low, high, k = start[which], stop[which], k[which]
     middle = 0.5 * (low + high)
     return np.concatenate([low, middle]), np.concatenate([middle, high]), np.concatenate([k, k])
 
 
 def piecewise(signal: Signal, edges: Floats, mean: float = 0.0) -> Piecewise:
-    """A signal, and a constant, on pieces between these edges."""
+    """Return a signal, plus a constant, on pieces between these edges."""
     middle, slope = signal.lines_at(0.5 * (edges[:-1] + edges[1:]))
     return Piecewise(edges, middle + mean, slope, signal.waves)

@@ -1,9 +1,8 @@
-"""Mean Coulomb friction under prescribed slip.
+"""Mean Coulomb friction under prescribed slip, and that of compliant contacts with soft or stiff bristles.
 
-Compliant contacts in the limits of soft and of stiff bristles: means under a prescribed slip, kicks at reversals.
-
-The slip is the sum of the belt's and a sine of displacement amplitude X; ratio is belt speed over velocity amplitude,
-presliding the presliding length over X. A mean is relative to the friction coefficient of steady sliding.
+The slip is the sum of the belt's and a sine of displacement amplitude X. ratio is belt speed over velocity
+amplitude, presliding is the presliding length over X. A mean is relative to the friction coefficient of
+steady sliding. ``reversal_kick`` is the effect of stiff bristles on a body after a reversal.
 """
 
 from __future__ import annotations
@@ -22,14 +21,27 @@ from frictionlab.values.quantities import EPSILON, Floats
 
 
 def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Floats:
-    """Mean Coulomb friction under a slip along the belt of this waveform; 1 from ratio 1 on.
+    """Compute mean Coulomb friction under a slip along the belt of this waveform; it is 1 from ratio 1 on.
 
-    Sine (2/pi) arcsin(ratio); triangle and sawtooth, whose velocity is spread evenly, ratio; parabola, the integral
-    of a triangle, 1 - sqrt(1 - ratio); square 0, at ratio 1 NaN: slip then rests for half of the period. Of any
-    velocity oscillation 1 - 2 CDF(-v_b), CDF(v) the share of time below v.
+    Sine: (2/pi) arcsin(ratio). Triangle and sawtooth, whose velocity is spread evenly: ratio. Parabola, the
+    integral of a triangle: 1 - sqrt(1 - ratio). Square: 0, and NaN at ratio 1, where slip rests for half of
+    the period. For any velocity oscillation it is 1 - 2 CDF(-v_b), with CDF(v) the share of time below v.
 
-    ratio [-]: belt speed over the amplitude of the slip velocity, any sign.
-    Source: Sulollari, van Dalen & Cabboi, Eq. 5; of waveforms Michaux, Ferri & Cunefare (2008).
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over the amplitude of the slip velocity [-], any sign.
+    waveform : str, default "sine"
+        Waveform of the slip velocity.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction [coefficient of steady sliding].
+
+    References
+    ----------
+    Sulollari, van Dalen & Cabboi, Eq. 5; of waveforms Michaux, Ferri & Cunefare (2008).
     """
     speed = np.asarray(ratio, dtype=np.float64)
     if waveform in _SMOOTH:
@@ -41,7 +53,10 @@ def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Fl
 
 
 def _share_below(speed: Floats, start: float, end: float) -> Floats:
-    """The share of time that a straight line is below a speed; NaN where it is level there: slip then rests."""
+    """Return the share of time that a straight line is below a speed.
+
+    It is NaN where the line is level at that speed: slip then rests.
+    """
     if start == end:
         return np.where(speed == start, np.nan, speed > start)
     return np.clip((speed - min(start, end)) / abs(end - start), 0.0, 1.0)
@@ -54,14 +69,29 @@ _SMOOTH: dict[str, Callable[[Floats], Floats]] = {
 
 
 def mean_prescribed_pulsating(ratio: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> Floats:
-    """Mean Coulomb friction under a sine along the belt and a normal load 1 + amplitude*sin that leads it by phase.
+    """Compute mean Coulomb friction under a sine along the belt and a pulsating normal load.
 
-    (2/pi) [arcsin(ratio) - amplitude sqrt(1 - ratio^2) cos(phase)] up to ratio 1: a load that presses while slip goes
-    forward pushes the body back. amplitude: of the load, in shares of its mean; phase [rad] of the load against the
-    oscillation of the slip velocity.
+    The load 1 + amplitude*sin leads the oscillation of the slip velocity by a phase. The mean is (2/pi)
+    [arcsin(ratio) - amplitude sqrt(1 - ratio^2) cos(phase)] up to ratio 1: a load that presses while slip
+    goes forward pushes the body back.
 
-    ratio [-]: belt speed over the amplitude of the slip velocity, any sign.
-    Source: -<n(t) sgn(w(t))>, the integral of n between the instants at which the slip w reverses.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over the amplitude of the slip velocity [-], any sign.
+    amplitude : array_like of float
+        Amplitude of the normal load, in shares of its mean [-].
+    phase : array_like of float
+        Phase of the load against the oscillation of the slip velocity [rad].
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction [coefficient of steady sliding].
+
+    Notes
+    -----
+    The result is -<n(t) sgn(w(t))>: the integral of n between the instants at which the slip w reverses.
     """
     size = np.clip(np.asarray(ratio, dtype=np.float64), -1.0, 1.0)
     pushed = np.asarray(amplitude) * np.sqrt((1.0 - size) * (1.0 + size)) * np.cos(phase)
@@ -69,7 +99,7 @@ def mean_prescribed_pulsating(ratio: ArrayLike, amplitude: ArrayLike, phase: Arr
 
 
 class MeanDirection(NamedTuple):
-    """-<n sgn(w)>, its error by rounding, and the share of the normal load that acts while slip rests."""
+    """Mean -<n sgn(w)>, its error by rounding, and the share of the normal load while slip rests."""
 
     mean: float
     error: float
@@ -77,10 +107,13 @@ class MeanDirection(NamedTuple):
 
 
 def mean_direction(slip: Piecewise, normal_load: Piecewise) -> MeanDirection:
-    """Mean Coulomb friction, relative to its coefficient, under any slip along the belt and any normal load.
+    """Compute mean Coulomb friction under any slip along the belt and any normal load.
 
-    -<n(t) sgn(w(t))>: the normal load n, of mean 1, integrated in closed form between the instants at which the slip
-    velocity w changes its sign: its corners and its zeros. Both on the same pieces.
+    The mean is relative to the friction coefficient.
+
+    It is -<n(t) sgn(w(t))>: the normal load n, of mean 1, is integrated in closed form between the instants
+    at which the slip velocity w changes its sign, its corners and its zeros. Both functions have the same
+    pieces.
     """
     zeros, edges = slip.crossings(), slip.edges
     cuts = np.unique(np.concatenate([edges, zeros.tau]))
@@ -96,13 +129,24 @@ def mean_direction(slip: Piecewise, normal_load: Piecewise) -> MeanDirection:
 
 
 def mean_prescribed_transverse(ratio: ArrayLike) -> Floats:
-    """Mean Coulomb friction along the belt under a sinusoidal slip across it.
+    """Compute mean Coulomb friction along the belt under a sinusoidal slip across it.
 
-    (2/pi) k' K(k), with k = 1/sqrt(1 + ratio^2) the modulus and k' = ratio k the complementary one. It starts
-    with an infinite slope and tends to 1.
+    It is (2/pi) k' K(k), with k = 1/sqrt(1 + ratio^2) the modulus and k' = ratio k the complementary one. It
+    starts with an infinite slope and tends to 1.
 
-    ratio [-]: belt speed over the amplitude of the slip velocity, any sign.
-    Source: the mean of ratio/sqrt(ratio^2 + sin^2), by Byrd & Friedman (1971).
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over the amplitude of the slip velocity [-], any sign.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction [coefficient of steady sliding].
+
+    References
+    ----------
+    Mean of ratio/sqrt(ratio^2 + sin^2), by Byrd & Friedman (1971).
     """
     from scipy.special import ellipkm1
 
@@ -113,14 +157,26 @@ def mean_prescribed_transverse(ratio: ArrayLike) -> Floats:
 
 
 def mean_prescribed_circular(ratio: ArrayLike) -> Floats:
-    """Mean Coulomb friction along the belt under circular slip: constant speed, direction turning at a constant rate.
+    """Compute mean Coulomb friction along the belt under circular slip.
 
-    (2/pi) [E(k) - (1 - k^2) K(k)]/k with modulus k = ratio up to 1, (2/pi) E(1/ratio) from there on: Landen's
-    transformation of [(1 + r) E(m) - (1 - r) K(m)]/(pi r), m = 4r/(1 + r)^2, which loses digits at small r. The
-    difference up to 1 is k^2 (1 - k^2) R_D(0, 1, 1 - k^2)/3 (DLMF 19.25.1), where nothing cancels.
+    Circular slip has constant speed and a direction that turns at a constant rate. The mean is (2/pi) [E(k) -
+    (1 - k^2) K(k)]/k with modulus k = ratio up to 1, and (2/pi) E(1/ratio) from there on: Landen's
+    transformation of [(1 + r) E(m) - (1 - r) K(m)]/(pi r), m = 4r/(1 + r)^2, which loses digits at small r.
+    The difference up to 1 is k^2 (1 - k^2) R_D(0, 1, 1 - k^2)/3 (DLMF 19.25.1), where nothing cancels.
 
-    ratio [-]: belt speed over the speed of the circular slip, any sign.
-    Source: gradient of the mean slip speed; elliptic integrals in the notation of Byrd & Friedman (1971).
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over the speed of the circular slip [-], any sign.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction [coefficient of steady sliding].
+
+    References
+    ----------
+    Gradient of the mean slip speed; elliptic integrals in the notation of Byrd & Friedman (1971).
     """
     from scipy.special import ellipe, elliprd
 
@@ -134,10 +190,20 @@ def mean_prescribed_circular(ratio: ArrayLike) -> Floats:
 
 
 def slip_back_and_forth(ratio: ArrayLike) -> tuple[Floats, Floats]:
-    """The slip against and along the belt's, per period [X], of a sine along the belt.
+    """Compute the slip against and along the belt's, per period, of a sine along the belt.
 
-    2 (sin t - t cos t) and that plus 2 pi cos t, with cos t = ratioof either sign; from ratio 1 on the slip
+    These are 2 (sin t - t cos t), and that plus 2 pi cos t, with cos t = ratio. From ratio 1 on the slip
     against the belt is 0.
+
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over velocity amplitude [-], any sign.
+
+    Returns
+    -------
+    back, forth : numpy.ndarray of float
+        Slip against and along the belt's [X].
     """
     size = np.abs(np.asarray(ratio, dtype=np.float64))
     angle = np.arccos(np.minimum(size, 1.0))
@@ -152,24 +218,50 @@ def _share_back(ratio: ArrayLike) -> Floats:
 
 
 def mean_soft_dahl(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
-    """Mean Dahl friction under a sine along the belt, where the bristles are soft: (1 - r)/(1 + r).
+    """Compute mean Dahl friction under a sine along the belt with soft bristles, (1 - r)/(1 + r).
 
-    r = (slip back/slip forth)^(1/exponent); for exponent 1 the mean velocity over the mean speed, which LuGre
-    friction of constant g shares. The error at finite stiffness is of order presliding^-2.
+    r = (slip back/slip forth)^(1/exponent). For exponent 1 it is the mean velocity over the mean speed, as
+    for LuGre friction of constant g. The error at finite stiffness is of order presliding^-2.
 
-    ratio [-]: belt speed over velocity amplitude, any sign; exponent [-] > 0.
-    Source: averaging Dahl (1968) over a period in which friction hardly changes.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over velocity amplitude [-], any sign.
+    exponent : float, default 1.0
+        Exponent of the law [-], > 0.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction [coefficient of steady sliding].
+
+    References
+    ----------
+    Averaging Dahl (1968) over a period in which friction hardly changes.
     """
     remains = _share_back(ratio) ** (1.0 / exponent)
     return np.copysign((1.0 - remains) / (1.0 + remains), ratio)
 
 
 def mean_soft_transverse(ratio: ArrayLike) -> Floats:
-    """Mean friction of soft vectorial Dahl or LuGre bristles along the belt, under a sine across it.
+    """Compute mean friction of soft vectorial Dahl or LuGre bristles under a sine across the belt.
 
-    Mean velocity over mean speed, ratio/[(2/pi) sqrt(1 + ratio^2) E(1/sqrt(1 + ratio^2))]: below Coulomb's.
+    It is the mean velocity over the mean speed, ratio/[(2/pi) sqrt(1 + ratio^2) E(1/sqrt(1 + ratio^2))], and
+    lies below Coulomb's.
 
-    ratio [-]: belt speed over velocity amplitude, any sign. Source: averaging, as ``mean_soft_dahl``.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over velocity amplitude [-], any sign.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction along the belt [coefficient of steady sliding].
+
+    Notes
+    -----
+    The result is found by averaging, as in ``mean_soft_dahl``.
     """
     from scipy.special import ellipe
 
@@ -179,11 +271,24 @@ def mean_soft_transverse(ratio: ArrayLike) -> Floats:
 
 
 def mean_soft_circular(ratio: ArrayLike) -> Floats:
-    """Mean friction of soft vectorial Dahl or LuGre bristles along the belt, under a circular slip.
+    """Compute mean friction of soft vectorial Dahl or LuGre bristles under a circular slip.
 
-    Mean velocity over mean speed, ratio/[(2/pi) (1 + ratio) E(2 sqrt(ratio)/(1 + ratio))]: above Coulomb's.
+    It is the mean velocity over the mean speed, ratio/[(2/pi) (1 + ratio) E(2 sqrt(ratio)/(1 + ratio))], and
+    lies above Coulomb's.
 
-    ratio [-]: belt speed over the speed of the circular slip, any sign. Source: averaging, as ``mean_soft_dahl``.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over the speed of the circular slip [-], any sign.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction along the belt [coefficient of steady sliding].
+
+    Notes
+    -----
+    The result is found by averaging, as in ``mean_soft_dahl``.
     """
     from scipy.special import ellipe
 
@@ -194,13 +299,27 @@ def mean_soft_circular(ratio: ArrayLike) -> Floats:
 
 
 def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats:
-    """Mean elasto-plastic friction of constant g under a sine along the belt, where the bristles are soft.
+    """Compute mean elasto-plastic friction of constant g under a sine along the belt, with soft bristles.
 
-    m solves m alpha(m) = 1 - slip back/slip forth, alpha rising from 0 at breakaway_ratio to 1 at 1: at least
-    breakaway_ratio however slow the belt, since bristles are elastic below. m has the belt's sign.
+    The mean m solves m alpha(m) = 1 - slip back/slip forth, with alpha rising from 0 at breakaway_ratio to 1
+    at 1. It is at least breakaway_ratio however slow the belt, since bristles are elastic below. m has the
+    belt's sign.
 
-    ratio [-]: belt speed over velocity amplitude, not 0; breakaway_ratio [-] in (0, 1).
-    Source: averaging Dupont et al. (2002), IEEE TAC 47, 787, as ``mean_soft_dahl``.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over velocity amplitude [-], not 0.
+    breakaway_ratio : float
+        Breakaway deflection over that of steady sliding [-], in (0, 1).
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction m [coefficient of steady sliding].
+
+    References
+    ----------
+    Averaging Dupont et al. (2002), IEEE TAC 47, 787, as ``mean_soft_dahl``.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -213,13 +332,27 @@ def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats
 
 
 def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
-    """Mean Jenkins friction under a sine along the belt, exact where the slider never slips back.
+    """Compute mean Jenkins friction under a sine along the belt, exact where the slider never slips back.
 
-    1 - (mean distance of the slip behind its running maximum)/presliding; NaN where the slip back is more than
-    twice the presliding length. Tends to 1 where the spring is soft.
+    It is 1 - (mean distance of the slip behind its running maximum)/presliding. It tends to 1 where the
+    spring is soft.
 
-    ratio [-]: belt speed over velocity amplitude, > 0 or < 0; presliding [X] > 0.
-    Source: the play operator of the spring in series with the slider.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over velocity amplitude [-], > 0 or < 0.
+    presliding : array_like of float
+        Presliding length [X], > 0.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Mean friction [coefficient of steady sliding]; NaN where the slip back is more than twice the presliding
+        length.
+
+    Notes
+    -----
+    The model is the play operator of the spring in series with the slider.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -237,14 +370,29 @@ def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
 
 
 def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
-    """Mean friction of a stiff Dahl contact minus Coulomb's, under a sine along the belt, per presliding/X.
+    """Compute mean friction of a stiff Dahl contact minus Coulomb's, per presliding/X.
 
-    (2/(3 pi)) H ratio/(1 - ratio^2), H = 2^(1 - i)/(2 - i) the path, in presliding lengths, over which the jump of
-    friction at a reversal is spread: 1 for exponent i = 1 and for 0, an ideal spring that slips (Jenkins). The terms
-    in sqrt(presliding) of the two reversals of a period cancel. Infinite for i >= 2, where it falls more slowly.
+    The slip is a sine along the belt. The difference is (2/(3 pi)) H ratio/(1 - ratio^2), with H = 2^(1 -
+    i)/(2 - i) the path, in presliding lengths, over which the jump of friction at a reversal is spread: 1 for
+    exponent i = 1 and for 0, an ideal spring that slips (Jenkins). The terms in sqrt(presliding) of the two
+    reversals of a period cancel.
 
-    ratio [-]: belt speed over velocity amplitude, in (-1, 1), not near its ends; exponent [-] >= 0.
-    Source: expansion of ``dahl_path`` after both reversals.
+    Parameters
+    ----------
+    ratio : array_like of float
+        Belt speed over velocity amplitude [-], in (-1, 1), not near its ends.
+    exponent : float, default 1.0
+        Exponent i of the law [-], >= 0.
+
+    Returns
+    -------
+    numpy.ndarray of float
+        Difference of mean friction per presliding/X [coefficient of steady sliding]. It is infinite for i >= 2,
+        where the difference falls more slowly.
+
+    Notes
+    -----
+    The result is an expansion of ``dahl_path`` after both reversals.
     """
     felt = 2.0 ** (1.0 - exponent) / (2.0 - exponent) if exponent < 2.0 else math.inf
     size = np.asarray(ratio, dtype=np.float64)
@@ -252,16 +400,28 @@ def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
 
 
 def reversal_kick(friction: float, acceleration: float) -> float:
-    """Velocity after a reversal minus that under Coulomb friction, per square root of the presliding length.
+    """Compute velocity after a reversal minus that under Coulomb friction, per root of the presliding length.
 
     After a reversal Dahl friction of exponent 1 changes its sign over a path of a presliding length d, and
-    accelerates the body until then: with q = path/d, kick/sqrt(d) = integral over q > 0 of 2 f exp(-q)/sqrt(2 a q +
-    4 f (1 - exp(-q))). So the steady state of a body tends to Coulomb's as the square root of d, under prescribed
-    slip as d.
+    accelerates the body until then. With q = path/d, kick/sqrt(d) is the integral over q > 0 of 2 f
+    exp(-q)/sqrt(2 a q + 4 f (1 - exp(-q))). So the steady state of a body tends to Coulomb's as the square
+    root of d, under prescribed slip as d.
 
-    friction f > 0: largest friction force per unit mass; acceleration a > 0: of the slip, after friction has
-    reversed. Source: energy of x'' = a + 2 f exp(-x/d) from rest; by the trapezoidal rule in sqrt(q), exact to
-    rounding.
+    Parameters
+    ----------
+    friction : float
+        Largest friction force f per unit mass, > 0.
+    acceleration : float
+        Acceleration a of the slip after friction has reversed, > 0.
+
+    Returns
+    -------
+    float
+        Velocity per square root of the presliding length.
+
+    Notes
+    -----
+    The result follows from the energy of x'' = a + 2 f exp(-x/d) from rest, by the trapezoidal rule in sqrt(q), exact to rounding.
     """
     root = 0.05 * np.arange(-140, 141) + 0.025
     square = root**2

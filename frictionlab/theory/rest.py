@@ -1,25 +1,29 @@
-"""Static equilibrium of the mass at rest, and when every motion converges to one.
+"""Rest of the mass under static friction, and convergence of all motions to one.
 
-When every motion converges to one periodic motion (convergent systems).
+If static friction balances the loads at all times, the mass never slips. Under the conditions below, every
+motion of a scene converges to one periodic motion (convergent systems).
 
-Two motions of one scene, e their difference, obey e'' + c e' + k e = -N(tau) (T - T'), with T and T' the friction
-coefficients at their slip velocities w and w': loads and the motion of the belt are the same for both and cancel,
-whatever their waveforms. With energy E = (e'^2 + k e^2)/2 and w - w' = e',
+Two motions of one scene, e their difference, obey e'' + c e' + k e = -N(tau) (T - T'), with T and T' the
+friction coefficients at their slip velocities w and w'. Loads and the motion of the belt are the same for
+both and cancel, whatever their waveforms. With energy E = (e'^2 + k e^2)/2 and w - w' = e',
 
     E' = -c e'^2 - N(tau) (T - T')(w - w') <= -(c - N_max fall) e'^2,
 
-for N > 0 and a coefficient that falls by at most ``fall`` per velocity (0 where it never does). Where the bracket is
-positive E never grows, and two periodic motions have e' = 0 throughout: they have the same slip, at a constant
-distance e. Where that slips, T = T' and k e = 0. So they differ only if the mass never slips, which it cannot on a
-belt of mean speed other than 0: it would be carried off. In the plane the same holds by vectors, with the lesser
-damping.
+for N > 0 and a coefficient that falls by at most ``fall`` per velocity (0 if it never falls). If the bracket
+is positive, E never grows, and two periodic motions have e' = 0 throughout: they have the same slip, at a
+constant distance e. While they slip, T = T' and k e = 0. So they differ only if the mass never slips. On a
+belt of mean speed other than 0 that is impossible: the mass would be carried off. In the plane the same holds
+by vectors, with the lesser damping.
 
-Where no dashpot damps and friction never falls, E still never grows, so that the map of a period moves no two states
-apart, and the states it leaves as they are form a convex set: one of them that attracts its neighbours is alone.
+If no dashpot damps and friction never falls, E still never grows. The map of a period then moves no two
+states apart, and its fixed points form a convex set. A fixed point that attracts its neighbours is therefore
+the only one.
 
-What of the body remembers only takes energy: springs that relax add the sum of q^2/(2 k) to E, which decays.
+Parts of the body that remember only take energy: springs that relax add the sum of q^2/(2 k) to E, which
+decays.
 
-None of this holds for springs and dashpots that are not linear: a Duffing oscillator has several periodic motions.
+None of this holds for springs and dashpots that are not linear: a Duffing oscillator has several periodic
+motions.
 """
 
 from __future__ import annotations
@@ -42,7 +46,7 @@ CREEP = 1e-9
 
 
 def friction_at_rest(law: Any) -> float:
-    """The friction coefficient at the onset of slip."""
+    """Return the friction coefficient at the onset of slip."""
     if law.memory_kind == "none":
         return float(law.static_friction())
     at_rest: float = law.sliding_friction(0.0)
@@ -50,7 +54,10 @@ def friction_at_rest(law: Any) -> float:
 
 
 def can_hold(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether static friction can keep a mass with the belt at all times where its spring is not bent on average."""
+    """Check whether static friction can keep a mass at rest on the belt at all times.
+
+    The spring of the mass is undeflected on average.
+    """
     if not scene.is_harmonic:
         held = _held_with_the_belt(scene)
         return held is not None and bool(np.all(np.abs(held.force) <= held.pressed * friction_at_rest(law)))
@@ -62,7 +69,9 @@ def can_hold(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether static friction balances the loads at all times on a belt of mean speed 0, which may vibrate.
+    """Check whether static friction balances the loads at all times on a belt of mean speed 0.
+
+    The belt may vibrate.
 
     The mass then never slips, wherever in a range it stays. Bristles always deflect: False.
     """
@@ -70,10 +79,11 @@ def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def resting_range(scene: Scene, law: FrictionLaw, side: float = 1.0) -> float:
-    """The largest mean friction coefficient of a mass that never slips on a belt of mean speed 0, times ``side``.
+    """Return the largest mean friction coefficient of a mass that never slips on a belt of mean speed 0.
 
-    -inf where it must slip. The spring force k and friction balance the force that keeps the mass with the belt:
-    |force - k| <= limit at all times, a convex set of k; the mean is k1/normal_load. side -1: of the least mean.
+    It is multiplied by ``side``: side -1 gives the least mean. It is -inf if the mass must slip. The spring
+    force k and friction balance the force that keeps the mass at rest on the belt: |force - k| <= limit at
+    all times, a convex set of k; the mean is k1/normal_load.
     """
     held = _held_with_the_belt(scene)
     if held is None:
@@ -82,7 +92,10 @@ def resting_range(scene: Scene, law: FrictionLaw, side: float = 1.0) -> float:
 
 
 def _largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
-    """Along x1, of the set of spring forces that friction up to the limit balances together with the load."""
+    """Return the largest spring force along x1 that friction balances together with the load.
+
+    Friction may reach the limit.
+    """
     if not load.imag.any():
         upper, lower = float((load.real + limit).min()), float((load.real - limit).max())
         return upper if lower <= upper else -math.inf
@@ -102,7 +115,9 @@ def _largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
 
 
 class _Held(NamedTuple):
-    """The force of friction that keeps the mass with the belt, x1 + i x2, and the normal load, over a period.
+    """Force of friction that keeps the mass at rest on the belt, x1 + i x2, and the normal load.
+
+    Both are given over a period.
 
     mean: of the normal load.
     """
@@ -113,7 +128,7 @@ class _Held(NamedTuple):
 
 
 def _held_with_the_belt(scene: Scene) -> _Held | None:
-    """At many times; None where the belt's velocity jumps, which no force can follow."""
+    """Return the force at many times; None if the belt's velocity jumps, which no force can follow."""
     mass = scene.mass()
     if scene.is_harmonic:
         turn = np.exp(1j * np.linspace(0.0, np.pi, 721))  # the other half of the ellipse follows by symmetry
@@ -136,7 +151,7 @@ def _held_with_the_belt(scene: Scene) -> _Held | None:
 
 
 class _Times(NamedTuple):
-    """Many times on pieces between edges, and the pieces they are on."""
+    """Many times on pieces between edges, and the pieces of these times."""
 
     edges: Floats
     tau: Floats
@@ -144,7 +159,7 @@ class _Times(NamedTuple):
 
 
 def _times(edges: Floats, quickest: float) -> _Times:
-    """Both ends of every piece included."""
+    """Return many times, both ends of every piece included."""
     dense = min(quickest * 1440.0 / (2.0 * math.pi), 20000.0 / edges[-1])
     counts = 3 + np.ceil(np.diff(edges) * dense).astype(int)
     pairs = zip(edges[:-1], edges[1:], counts.tolist(), strict=True)
@@ -153,7 +168,7 @@ def _times(edges: Floats, quickest: float) -> _Times:
 
 
 def _against_the_belt(load: Signal, belt: Signal, own: tuple[float, float], times: _Times) -> Floats | None:
-    """Load less inertia, dashpot and spring (own) of a mass that goes with the belt along one direction."""
+    """Return load less inertia, dashpot and spring (own) of a mass at rest on the belt, in one direction."""
     (damping, stiffness), (edges, tau, k) = own, times
     path = piecewise(belt, edges)
     places = np.arange(len(edges) - 1)
@@ -171,59 +186,62 @@ def _against_the_belt(load: Signal, belt: Signal, own: tuple[float, float], time
 
 
 NEARLY_LINEAR = 0.15
-"""Of the force of the linear spring: the largest part of it that the cubic one adds or takes."""
+"""Largest force of the cubic spring, of either sign, over that of the linear spring."""
 
 
 def is_unique(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether the scene has exactly one periodic motion, which attracts every start (theorem T1).
+    """Check whether the scene has exactly one periodic motion, which attracts every start (theorem T1).
 
-    For every periodic load, motion of the belt and positive normal load: of a law without memory on a mass with
-    damping above ``largest normal load * steepest fall``, where the mean belt speed is not 0, or loads make the mass
-    slip all the same. Source: Leine & van de Wouw (2008).
+    The theorem holds for every periodic load, motion of the belt and positive normal load. It needs a law
+    without memory on a mass with damping above ``largest normal load * steepest fall``. It also needs a mean
+    belt speed other than 0, or loads that make the mass slip all the same. Source: Leine & van de Wouw
+    (2008).
     """
     return is_unique_in_slip(scene, law) and not stays_at_rest(scene, law)
 
 
 def is_unique_in_slip(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether a theorem says that this scene has one steady state at every belt speed at which the mass slips.
+    """Check whether a theorem gives this scene one steady state at every belt speed at which the mass slips.
 
-    Of a law without memory under a drive.
+    The theorem is for laws without memory under a drive.
     """
     free = scene.degrees_of_freedom > 0 and not scene.undriven
     return free and _damping(scene) > 0.0 and is_convergent(scene, law)
 
 
 def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether no two motions part: damping outweighs the steepest fall of friction with speed.
+    """Check whether no two motions part: damping outweighs the steepest fall of friction with speed.
 
-    The steady state of a law without memory is then unique and attracts every start (Leine & van de Wouw, 2008),
-    under the further conditions of ``is_unique``. Without a load across the belt the motion across decays under every
-    isotropic law, and only the damping along the belt matters. The theorem does not cover laws with memory.
+    The steady state of a law without memory is then unique and attracts every start (Leine & van de Wouw,
+    2008), under the further conditions of ``is_unique``. Without a load across the belt the motion across
+    decays under every isotropic law, and only the damping along the belt matters. The theorem does not cover
+    laws with memory.
     """
     return law.memory_kind == "none" and not scene.bends and (law.monotone() or falls_slowly(scene, law))
 
 
 def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether damping outweighs the steepest fall of steady sliding friction under the largest normal load.
+    """Check whether damping outweighs the steepest fall of sliding friction under the largest normal load.
 
-    Never on a body that is not linear, whose motions may part whatever the friction.
+    It never does on a body that is not linear, whose motions may part whatever the friction.
     """
     return not scene.bends and falls_slower_than_dashpots(scene, law)
 
 
 def falls_slower_than_dashpots(scene: Scene, law: FrictionLaw) -> bool:
-    """The same, whatever the springs."""
+    """Check the same, whatever the springs."""
     fall = law.steepest_fall()
     return fall == 0.0 or largest_normal_load(scene) * fall < _damping(scene)
 
 
 def resonates_once(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether a body that is not linear has no two resonances, so that few starts are tried of it. No theorem.
+    """Check whether a body that is not linear has no two resonances, so that few starts suffice. No theorem.
 
-    Of a spring alike to both sides, under a sine. It may harden, or be linear: under one no quicker than the free
-    motion, which is twice as quick as that within reach of the load, so that no harmonic resonates either. Or its
-    force within reach of load and friction is nearly linear, and one harmonic balances one motion, with friction and
-    without. In all of 3,600 random scenes of either kind two starts found what twenty did.
+    The spring must act alike to both sides, under a sine. In the first kind of scenes the spring hardens
+    under a sine no quicker than the free motion, or it is linear. Twice the frequency of the sine exceeds
+    that of the free motion within reach of the load, so that no harmonic resonates either. In the second kind
+    the spring is nearly linear within reach of load and friction, and one harmonic balances one motion, with
+    friction and without. In all of 3,600 random scenes of either kind two starts found what twenty did.
     """
     mass = scene.mass()
     if not mass.bends or not scene.is_harmonic or not scene.load_along_belt_only:
@@ -240,7 +258,7 @@ def resonates_once(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def largest_normal_load(scene: Scene) -> float:
-    """Of a period [K_1 L]."""
+    """Return the largest normal load in a period [K_1 L]."""
     assert scene.normal_load is not None
     if scene.is_harmonic:
         return scene.normal_load
@@ -249,7 +267,7 @@ def largest_normal_load(scene: Scene) -> float:
 
 
 def _damping(scene: Scene) -> float:
-    """Of the directions in which the body moves, the lesser."""
+    """Return the lesser damping of the directions in which the body moves."""
     mass = scene.mass()
     along = mass.damping
     return along if scene.load_along_belt_only else min(along, mass.transverse_damping)

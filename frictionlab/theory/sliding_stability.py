@@ -1,6 +1,6 @@
-"""Steady sliding on damped bristles: its impedance and its stability with a mass on a spring.
+"""Steady sliding on damped bristles: its impedance, its stability with a mass on a spring, and saturation.
 
-When a deflection that grows along the slip stays at its limit.
+A deflection is saturated if slip keeps it at its limit.
 """
 
 from __future__ import annotations
@@ -17,11 +17,18 @@ from frictionlab.theory.rest import friction_at_rest
 
 @dataclass(frozen=True)
 class SteadySliding:
-    """A bristle contact in steady sliding at v_0, linearized for small changes of its slip velocity.
+    """Bristle contact in steady sliding at v_0, linearized for small changes of its slip velocity.
 
-    slope [force/velocity]: dg/dv of its steady friction force, viscosity apart; negative where friction falls. lag
-    [time]: g/(stiffness v_0), by which bristles lag behind the slip. lead [time]: damping/stiffness of the
-    bristles. viscosity [force/velocity].
+    Parameters
+    ----------
+    slope : float
+        Slope dg/dv of the steady friction force, without viscosity [force/velocity]; negative where friction falls.
+    lag : float
+        Lag g/(stiffness v_0) of the bristles behind the slip [time].
+    lead : float, default 0.0
+        Lead damping/stiffness of the bristles [time].
+    viscosity : float, default 0.0
+        Viscous friction per velocity [force/velocity].
     """
 
     slope: float
@@ -30,17 +37,46 @@ class SteadySliding:
     viscosity: float = 0.0
 
     def impedance(self, s: complex) -> complex:
-        """Change of friction per change of slip velocity along the slip: slope (1 + lead s)/(1 + lag s) + viscosity.
+        """Compute the change of friction per change of slip velocity, along the slip.
 
-        s [1/time]: i Omega for a sine. Source: linearized Canudas de Wit et al. (1995), IEEE TAC 40, 419.
+        It is slope (1 + lead s)/(1 + lag s) + viscosity.
+
+        Parameters
+        ----------
+        s : complex
+            Complex frequency [1/time]: i Omega for a sine.
+
+        Returns
+        -------
+        complex
+            Impedance [force/velocity].
+
+        References
+        ----------
+        Linearized Canudas de Wit et al. (1995), IEEE TAC 40, 419.
         """
         return self.slope * (1.0 + self.lead * s) / (1.0 + self.lag * s) + self.viscosity
 
     def stable(self, damping: float, stiffness: float) -> bool:
-        """Whether steady sliding of a unit mass on this spring and dashpot is stable.
+        """Check whether steady sliding of a unit mass on a spring and a dashpot is stable.
 
-        The lag of the bristles stabilizes a falling characteristic. damping [force/velocity] and stiffness
-        [force/length] per unit mass. Source: Routh (1877) on lag s^3 + b s^2 + c s + stiffness.
+        The lag of the bristles stabilizes a falling characteristic.
+
+        Parameters
+        ----------
+        damping : float
+            Damping per unit mass [force/velocity].
+        stiffness : float
+            Stiffness per unit mass [force/length].
+
+        Returns
+        -------
+        bool
+            Whether steady sliding is stable.
+
+        References
+        ----------
+        Routh (1877) on lag s^3 + b s^2 + c s + stiffness.
         """
         damped = damping + self.viscosity
         second = 1.0 + damped * self.lag + self.slope * self.lead
@@ -49,9 +85,10 @@ class SteadySliding:
 
 
 def steady_deflection(law: Any, v: float) -> float:
-    """The deflection [scene length] of a bristle in steady sliding at slip velocity v (not zero).
+    """Return the deflection [scene length] of a bristle in steady sliding at slip velocity v (not zero).
 
-    From the undeflected bristle, which slip bends, up to where its rate is zero or turns round.
+    It is the first deflection, from the undeflected bristle on, at which the rate is zero or changes its
+    sign.
     """
     direction, still = math.copysign(1.0, v), 1e-12 * abs(v)
     low, high = 0.0, law.largest_deflection()
@@ -69,11 +106,13 @@ def steady_deflection(law: Any, v: float) -> float:
 
 
 def loses_energy(mass: Mass, law: Any, belt_speed: float, reach: float) -> bool:
-    """Whether every motion no farther than this from steady sliding loses energy, on friction without memory.
+    """Check whether every motion near steady sliding loses energy, on friction without memory.
 
-    It does where no slip velocity within its reach makes friction differ from that of steady sliding in the
-    direction of the motion by more than damping takes. Slip that has turned round, and rest where it holds by
-    no more than that, lose energy by themselves. reach [scene velocity]: in the norm of energy.
+    The motion is no farther than ``reach`` [scene velocity] from steady sliding, in the norm of energy.
+
+    It does if no slip velocity within reach makes friction differ from that of steady sliding, in the
+    direction of the motion, by more than damping takes. Slip that has reversed, and rest held by no more than
+    that friction, lose energy by themselves.
     """
     speed = abs(belt_speed)
     # where the range is small against the speed the slopes are those of a millionth of it
@@ -88,14 +127,14 @@ _NEAR = np.array([1.0 - 1e-6, 1.0 + 1e-6])
 
 
 SHORT = 1e-7
-"""Share of the limit that a deflection lacks where its approach is measured."""
+"""Relative distance of a deflection from its limit at which its approach is measured."""
 
 
 def saturates(law: Any) -> bool:
-    """Whether slip that only turns leaves a deflection at its limit, with one friction at every speed.
+    """Check whether slip that only turns keeps a deflection at its limit, with one friction at every speed.
 
-    A ``rotated`` deflection moves with |v|: wherever the way slid has no end it grows until it stays at its limit.
-    Friction is then that of sliding, along the slip.
+    A ``rotated`` deflection moves with |v|: if the path slid has no end, it grows until it stays at its
+    limit. Friction is then that of sliding, along the slip.
     """
     if law.planar_form() != "rotated" or not law.constant_sliding_friction():
         return False
@@ -109,7 +148,7 @@ def saturates(law: Any) -> bool:
 
 
 def slides_saturated(law: Any) -> bool:
-    """Whether a bristle at its limit stays there in slip of any speed along a line, at one friction."""
+    """Check whether a bristle at its limit stays there in slip of any speed along a line, at one friction."""
     if law.memory_kind != "bristle" or not law.constant_sliding_friction():
         return False
     limit, friction = law.largest_deflection(), law.sliding_friction(1.0)
@@ -121,6 +160,6 @@ def slides_saturated(law: Any) -> bool:
 
 
 def remaining_share(law: Any, path: Any) -> Any:
-    """What is left of a small lack of deflection after a path slid [scene length], of what there was before."""
+    """Return the share of a small lack of deflection that is left after a path slid [scene length]."""
     limit = law.largest_deflection()
     return np.exp(-path * law.rate(1.0, (1.0 - SHORT) * limit) / (SHORT * limit))

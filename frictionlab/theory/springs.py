@@ -1,12 +1,13 @@
-"""Bodies that remember as springs that relax: one for a standard linear solid, a sum of eight for any other memory.
+"""Bodies that remember as springs that relax: one for a standard linear solid, else a sum of eight.
 
-A force k y, y' = x1' - y/time, is k p/(p + 1/time) times x1, with p = i omega. Powers of p are no finite sum of
-these, but a few of them and a dashpot are close to one over the harmonics of a drive: stiffnesses and rates by least
-squares, weighted as the harmonics of a motion under forces that jump fall off. All are positive: as the memory that
-they stand for they only take energy. What they miss is told by the answers for two sums that miss four
-times as much, in two ways.
+A force k y, y' = x1' - y/time, is k p/(p + 1/time) times x1, with p = i omega. Powers of p are no finite sum
+of such terms, but a few of them and a dashpot come close to one over the harmonics of a drive. Stiffnesses
+and rates are found by least squares, weighted as the harmonics of a motion under forces that jump fall off.
+All are positive: they only take energy, as does the memory that they stand for. Their error is estimated from
+the answers for two other sums, whose misfit is four times as large, in two ways.
 
-Source: of sums of relaxing springs for fractional derivatives Diethelm, Numerical Algorithms 47 (2008), 361-390.
+Source: of sums of relaxing springs for fractional derivatives Diethelm, Numerical Algorithms 47 (2008),
+361-390.
 """
 
 from __future__ import annotations
@@ -24,21 +25,22 @@ from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import Floats
 
 COUNT = 8
-"""Springs of a sum."""
+"""Number of springs in a sum."""
 FASTEST, SLOWEST = 1e3, 1e-6
-"""Of the rate of a standard linear solid that is followed as it is, over the frequency at which all repeats."""
+"""Range of the rate of a standard linear solid that is followed exactly, over the frequency at which all
+repeats."""
 RATES = 300.0, 1e-3
-"""The same of a sum: the highest and the lowest."""
+"""Highest and lowest rate in a sum, over the same frequency."""
 FITTED_ORDERS = 1000
-"""Over which a sum is fitted."""
+"""Number of harmonics over which a sum is fitted."""
 FALL = 3.0
 """Power of frequency by which the harmonics of a motion fall under a force that jumps."""
 COARSER = 4.0
-"""By how much more the two other sums miss."""
+"""Misfit of the two other sums, over that of the best one."""
 SHIFTS = (1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0), (1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0)
-"""Of the logarithms of their rates, in proportion."""
+"""Shifts of the logarithms of the rates of the two other sums, in proportion."""
 BEST, COARSE = 0, (1, 2)
-"""Numbers of the sums."""
+"""Numbers of the sums: the best one, and the two coarser ones."""
 
 
 class Springs(NamedTuple):
@@ -50,7 +52,9 @@ class Springs(NamedTuple):
 
 
 def is_exact(scene: Scene) -> bool:
-    """Whether nothing of the body remembers but a standard linear solid that is followed as it is."""
+    """Check whether the memory of the body is nothing but a standard linear solid that is followed
+    exactly.
+    """
     body = scene.body
     if body is None or body.fractional is not None or body.relaxation is None or body.relaxation.order != 1.0:
         return False
@@ -58,12 +62,12 @@ def is_exact(scene: Scene) -> bool:
 
 
 def base_frequency(scene: Scene) -> float:
-    """At which everything repeats."""
+    """Return the frequency at which everything repeats."""
     return scene.frequency / scene.periods
 
 
 def springs_of(scene: Scene, which: int = BEST) -> Springs:
-    """What of the body remembers, as springs; which: of the three sums."""
+    """Return the memory of the body as springs; which: number of the sum."""
     assert scene.body is not None
     relaxation, fractional = scene.body.relaxation, scene.body.fractional
     if is_exact(scene):
@@ -73,7 +77,7 @@ def springs_of(scene: Scene, which: int = BEST) -> Springs:
 
 
 def mass_of(scene: Scene, which: int = BEST) -> Mass:
-    """The numbers of a free scene, what of its body remembers included."""
+    """Return the numbers of a free scene, including the memory of its body."""
     mass = scene.mass()
     if not scene.remembers:
         return mass
@@ -103,7 +107,7 @@ def _scaled(springs: Springs, base: float, size: float) -> Springs:
 
 
 def _fitted(memory: Callable[[Any], Any]) -> list[Springs]:
-    """The three sums for a force over x1 at p = i times a share of the base frequency."""
+    """Fit the three sums to a force over x1 at p = i times a share of the base frequency."""
     from scipy.optimize import least_squares
 
     fit, (highest, lowest) = _Fit(memory), RATES
@@ -118,7 +122,7 @@ def _fitted(memory: Callable[[Any], Any]) -> list[Springs]:
 
 
 def _coarser(fit: _Fit, best: Floats, shift: Floats) -> Floats:
-    """The logarithms of rates that miss so much more."""
+    """Return the logarithms of rates whose misfit is so many times the best one."""
     aim = COARSER * np.linalg.norm(fit.missed(best)) + 1e-9
     size = 1e-3
     while size < 1.0 and np.linalg.norm(fit.missed(best + size * shift)) < aim:
@@ -152,11 +156,14 @@ class _Fit:
         return found / sizes, columns @ (found / sizes) - self.sought
 
     def missed(self, logarithms: Floats) -> Floats:
-        """By springs of these rates; in thousandths, as a search sees it well."""
+        """Return the misfit of springs of these rates, in thousandths, a scale that suits the search."""
         return 1e3 * self._solved(logarithms)[1]
 
     def springs(self, logarithms: Floats) -> Springs:
-        """Those of these rates; what has no stiffness relaxes as slowly as the motion goes."""
+        """Return the springs of these rates.
+
+        Those without stiffness relax as slowly as the motion goes.
+        """
         strengths, _ = self._solved(logarithms)
         least = 1e-13 * float(strengths.max())
         rates = np.where(strengths[:-1] > least, np.exp(logarithms), 1.0)

@@ -1,5 +1,4 @@
-"""Friction of a contact: rates of its memory, advance of a bristle, shares of a changing load, smoothed
-friction.
+"""Friction of a contact: its rates, advance of a bristle, changing load, smoothed friction.
 
 First come rate and friction of a law with memory, then the advance of one bristle over a time and its
 projection onto the yield surface, then a contact of constant stiffness under a changing normal load.
@@ -156,8 +155,7 @@ project_to_yield = by_dimension(lambda law, z: _yielded(law, z), _caught_in_the_
 
 @inner
 def resistance_at_share(law: Any, w: Any, z: Any, n: float) -> Any:
-    """Return rate of one bristle and friction coefficient at n times the mean normal load, at constant
-    stiffness.
+    """Return rate of a bristle and friction at n times the mean normal load, at constant stiffness.
 
     The contact has the stiffness and damping of the mean load: the law, per unit normal load, sees z/n.
     """

@@ -57,7 +57,7 @@ planar = inner(compilable(_plain.in_the_plane))
 
 
 class Instant(NamedTuple):
-    """A time, with sine and cosine of Omega*tau."""
+    """Instant of time, with sine and cosine of Omega*tau."""
 
     tau: float
     sine: float
@@ -87,8 +87,9 @@ Not ``fast``: where the reference balances all of the load, the difference must 
 
 
 def _rates_of_one_sine(body: Any, now: Instant) -> Any:
-    """Return both derivatives: omega times the load a quarter of a period later, minus omega^2 times the
-    load.
+    """Return the first and the second derivative of the load.
+
+    They are omega times the load a quarter of a period later, and minus omega^2 times the load.
     """
     later = Instant(now.tau + 0.5 * math.pi / body.frequency, now.cosine, -now.sine)
     return body.frequency * load(body, later), -(body.frequency**2) * load(body, now)
@@ -116,8 +117,9 @@ load_curvature = by_variation(
 
 
 def _impulse_of_one_sine(body: Any, start: float, end: float) -> Any:
-    """Return the length of the interval times the load half way, times sin(a)/a with half the angle passed as
-    a.
+    """Return the integral of the load.
+
+    It is the length of the interval times the load half way, times sin(a)/a with half the angle passed as a.
     """
     half_angle = 0.5 * body.frequency * (end - start)
     mean = math.sin(half_angle) / half_angle if half_angle > 0.0 else 1.0
@@ -354,8 +356,9 @@ def slip(body: Any, belt_speed: float, now: Instant, v: Any) -> Any:
 
 @fast
 def acceleration_under(body: BodyNumbers, push: Any, pressed: float, x: Any, v: Any, rub: Any) -> Any:
-    """Return the acceleration of the mass under a known load and normal load; rub: coefficient of
-    friction.
+    """Return the acceleration of the mass under a known load and normal load.
+
+    rub: coefficient of friction.
     """
     return push - restoring_force(body, x, v) - pressed * rub
 
@@ -427,8 +430,9 @@ look_ahead = by_springs(lambda body: 1e300, lambda body: 0.25 / quickest_of(body
 
 
 def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
-    """Bound the share of bends in the curvature, by the largest position and derivatives within
-    ``look_ahead``.
+    """Bound the share of bends in the curvature.
+
+    The bound uses the largest position and derivatives within ``look_ahead``.
     """
     bends, v = body.bends, abs(belt_speed) + belt_swing(body)
     most, a, jerk = abs(x.real) + v * look_ahead(body), _belt_bound(body, 1), _belt_bound(body, 2)
@@ -540,8 +544,9 @@ class Flow(NamedTuple):
 
 @fast
 def turned(problem: Any, tau: float) -> Any:
-    """Return sine and cosine of Omega*tau from those at the anchor, at most one radian away (Taylor, to
-    rounding).
+    """Return sine and cosine of Omega*tau from those at the anchor (Taylor, to rounding).
+
+    The time is at most one radian from the anchor.
     """
     angle = problem.body.frequency * (tau - problem.anchor)
     q = angle * angle
@@ -602,9 +607,7 @@ def swing_of(body: BodyNumbers) -> float:
 
 
 def _pushed_away(body: BodyNumbers, x: Any) -> bool:
-    """Check whether springs push outward with a million times the force by which the linear one would pull
-    back.
-    """
+    """Check whether springs push outward a million times as hard as the linear one would pull back."""
     x1 = x.real
     return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 < -1e6 * body.stiffness_mean
 
@@ -614,8 +617,9 @@ runs_away = by_springs(lambda body, x: False, _pushed_away)
 
 
 def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
-    """Return the equilibrium on the side where springs stretch to hold the force, the first if there are
-    several.
+    """Return the equilibrium on the side where springs stretch to hold the force.
+
+    If there are several, it is the first one.
     """
     missing = force - linear_force(body, 0.0, v)
     side, low = math.copysign(1.0, missing), 0.0

@@ -27,8 +27,9 @@ def reference_acceleration(body: BodyNumbers, sine: float, cosine: float) -> Any
 
 
 def slip_events(step: Any, rates: Any, slip: Any, slip_rate: Any) -> Any:
-    """Make ``stop`` and ``lowest`` for a stepper and its rates (numba caches no kernel that is handed a
-    function).
+    """Make ``stop`` and ``lowest`` for a stepper and its rates.
+
+    They are made here because numba caches no kernel that is handed a function.
 
     rates(problem, tau, end) is the acceleration at the end of a step. slip(problem, tau, u) and
     slip_rate(problem, tau, a) are functions of the deviation's velocity and acceleration. problem.side is the
@@ -75,8 +76,9 @@ def _stop_at_zero(step: Any, slip: Any, rise: Any) -> Any:
 def _slowest(step: Any, rise: Any) -> Any:
     @inner
     def lowest(problem: Any, tau: float, state: Any, before: float, h: float) -> float:
-        """Return the step at which slip is slowest, within one where slip first falls, at rate ``before``,
-        then rises.
+        """Return the step at which slip is slowest, within one where slip first falls, then rises.
+
+        before: rate at which it falls first.
         """
         low, high, middle = 0.0, h, h
         at_low, at_high = before, 0.0

@@ -72,8 +72,9 @@ def add_product(factor: float, left: Any, right: Any, out: Any) -> None:
 
 @inner
 def invert(matrix: Any, inverse: Any) -> bool:
-    """Write the inverse by Gauss-Jordan elimination with row pivots; return False for a matrix singular to
-    rounding.
+    """Write the inverse by Gauss-Jordan elimination with row pivots.
+
+    Return False for a matrix that is singular to rounding.
     """
     n = matrix.shape[0]
     work = matrix.copy()

@@ -124,8 +124,9 @@ write_forces = by_relaxing(lambda body, state, force: None, _write)
 
 @fast
 def _of_a_sine(body: BodyNumbers, frequency: float, sine: float, cosine: float, tau: float) -> Any:
-    """Return the forces under the velocity sine*sin(frequency tau) + cosine*cos(frequency tau) that never
-    began.
+    """Return the forces under a sinusoidal velocity that has always acted.
+
+    The velocity is sine*sin(frequency tau) + cosine*cos(frequency tau).
     """
     stiffness, rate, angle = body.relaxing.stiffness, body.relaxing.rate, frequency * tau
     s, c = math.sin(angle), math.cos(angle)
@@ -225,8 +226,9 @@ belt travels along x1."""
 
 @fast
 def held_back_curvature(body: BodyNumbers, velocity: float, pushed: float) -> float:
-    """Return a bound on the second derivative of this force, from the time on at which the body knows its
-    forces.
+    """Return a bound on the second derivative of this force.
+
+    It holds from the time on at which the body knows its forces.
 
     velocity: of the belt at that time, along x1; pushed: bound on its acceleration.
     """

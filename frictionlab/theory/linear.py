@@ -114,8 +114,8 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
     Returns
     -------
     float
-        V_lin [omega_1 L]. It is infinite at undamped resonance, and NaN for a body that is not linear or whose table
-        does not give its response to the load.
+        V_lin [omega_1 L]. It is infinite at undamped resonance, and NaN for a body that is not linear or
+        whose table does not give its response to the load.
 
     Raises
     ------

@@ -37,8 +37,8 @@ def one_harmonic_velocity(scene: Scene, friction: float, ratio: ArrayLike) -> Fl
     Returns
     -------
     numpy.ndarray of float
-        Velocity amplitude V [omega_1 L]. It is zero where the load cannot overcome the first harmonic of friction,
-        P <= c s.
+        Velocity amplitude V [omega_1 L]. It is zero where the load cannot overcome the first harmonic of
+        friction, P <= c s.
 
     Raises
     ------

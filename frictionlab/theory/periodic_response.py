@@ -1,4 +1,4 @@
-"""Response in time of a linear body to a jump of force, repeated every period, from its response in frequency.
+"""Response in time of a linear body to a jump of force in every period, from its response in frequency.
 
 V(t) = (1/T) sum over all k of H(i k Omega) exp(i k Omega t), T = 2 pi/Omega, is the position after a unit
 impulse of force in every period, and, up to a constant, the velocity after a unit step of force at every t =

@@ -347,8 +347,8 @@ def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
     Returns
     -------
     numpy.ndarray of float
-        Mean friction [coefficient of steady sliding]; NaN where the slip back is more than twice the presliding
-        length.
+        Mean friction [coefficient of steady sliding]; NaN where the slip back is more than twice the
+        presliding length.
 
     Notes
     -----
@@ -387,8 +387,8 @@ def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
     Returns
     -------
     numpy.ndarray of float
-        Difference of mean friction per presliding/X [coefficient of steady sliding]. It is infinite for i >= 2,
-        where the difference falls more slowly.
+        Difference of mean friction per presliding/X [coefficient of steady sliding]. It is infinite for
+        i >= 2, where the difference falls more slowly.
 
     Notes
     -----
@@ -421,7 +421,8 @@ def reversal_kick(friction: float, acceleration: float) -> float:
 
     Notes
     -----
-    The result follows from the energy of x'' = a + 2 f exp(-x/d) from rest, by the trapezoidal rule in sqrt(q), exact to rounding.
+    The result follows from the energy of x'' = a + 2 f exp(-x/d) from rest, by the trapezoidal rule in sqrt(q),
+    exact to rounding.
     """
     root = 0.05 * np.arange(-140, 141) + 0.025
     square = root**2

@@ -22,7 +22,8 @@ class SteadySliding:
     Parameters
     ----------
     slope : float
-        Slope dg/dv of the steady friction force, without viscosity [force/velocity]; negative where friction falls.
+        Slope dg/dv of the steady friction force, without viscosity [force/velocity]. It is negative
+        where friction falls.
     lag : float
         Lag g/(stiffness v_0) of the bristles behind the slip [time].
     lead : float, default 0.0

@@ -52,9 +52,7 @@ class Springs(NamedTuple):
 
 
 def is_exact(scene: Scene) -> bool:
-    """Check whether the memory of the body is nothing but a standard linear solid that is followed
-    exactly.
-    """
+    """Check whether a standard linear solid, followed exactly, is all the memory of the body."""
     body = scene.body
     if body is None or body.fractional is not None or body.relaxation is None or body.relaxation.order != 1.0:
         return False

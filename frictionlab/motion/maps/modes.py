@@ -88,8 +88,8 @@ def _no_breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
 def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
     """Return the guard of a loaded deflection that sticks.
 
-        It is positive until the deflection reaches its limit, where it begins to slip. The limit may depend on
-    slip.
+        It is positive until the deflection reaches its limit, where it begins to slip. The limit may depend
+    on slip.
     """
     z = work.memory[number]
     far, loading = length(z), along(z, w)

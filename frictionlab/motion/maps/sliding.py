@@ -280,8 +280,9 @@ def _resting(part: float, problem: Flow, tau: float, x: Any) -> Any:
 
 
 class Hop(NamedTuple):
-    """Short time next to rest, closed by the balance of momentum: slip changes evenly, friction is its
-    mean.
+    """Short time next to rest that the balance of momentum closes.
+
+    Slip changes evenly, and friction is its mean.
     """
 
     tau: float

@@ -1,7 +1,8 @@
 """Step of a mass and the memory of its contact by Rodas5P, with elimination along an arrow matrix.
 
-The rate of a number z_k of the memory depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k,
-B_k = dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a stage
+The rate of a number z_k of the memory depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k, B_k
+= dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a
+stage
 
     (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
 

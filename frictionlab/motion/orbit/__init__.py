@@ -1,1 +1,1 @@
-"""One period of a steady state: its record, calculus on its panels, the columns read from it."""
+"""Period of a steady state: its record, calculus on its panels, the columns read from it."""

@@ -84,7 +84,7 @@ def interpolation_weights(at: Floats) -> Floats:
 
 
 class Track(NamedTuple):
-    """Arrays for the panels of an orbit [panels, nodes], stick [panels], and the number of panels written [1]."""
+    """Arrays for the panels of an orbit [panels, nodes], stick [panels], and the number written [1]."""
 
     tau: Any
     x: Any

@@ -1,8 +1,8 @@
-"""DOP853: one step of the explicit Runge-Kutta method of order 8, for a second-order equation x'' = f(tau, x, x').
+"""DOP853: step of the explicit Runge-Kutta method of order 8, for second-order equations x'' = f(tau, x, x').
 
-Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), section II.10,
-program DOP853. The stages are written out over named scalars, which compiles to faster code than loops over
-tables; positions and velocities are ``float`` on the line and ``complex`` in the plane.
+Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), section
+II.10, program DOP853. The stages are written out over named scalars, which compiles to faster code than loops
+over tables; positions and velocities are ``float`` on the line and ``complex`` in the plane.
 """
 
 from __future__ import annotations
@@ -312,9 +312,7 @@ class State(NamedTuple):
 
 
 class Step(NamedTuple):
-    """State after a step, its two error estimates (order 5 and 3) and the integral of friction over the
-    step.
-    """
+    """State after a step, its error estimates (order 5 and 3) and the integral of friction over the step."""
 
     x: Any
     v: Any
@@ -359,8 +357,9 @@ def carrying_nothing(rates: Any) -> Any:
 
 @cache
 def _stages_of(rates: Any) -> Any:
-    """Return ``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``; it is compiled
-    only once.
+    """Return ``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``.
+
+    It is compiled only once.
     """
 
     @fast_embedded

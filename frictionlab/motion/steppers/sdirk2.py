@@ -1,11 +1,11 @@
-"""SDIRK2: a singly diagonally implicit Runge-Kutta method of order 2 in two stages, L-stable and stiffly accurate.
+"""SDIRK2: singly diagonally implicit Runge-Kutta method of order 2 in two stages.
 
-R. Alexander, SIAM J. Numer. Anal. 14 (1977), 1006: gamma = 1 - 1/sqrt(2),
+It is L-stable and stiffly accurate. R. Alexander, SIAM J. Numer. Anal. 14 (1977), 1006: gamma = 1 - 1/sqrt(2),
 
     Y1 = y + h gamma f(Y1),   Y2 = y + h (1 - gamma) f(Y1) + h gamma f(Y2),   y is Y2 at the end,
 
-with y = (x, x', z): mass and bristles together, x eliminated. Each stage is solved by Newton's method with a
-difference Jacobian of the rates; a step in which that fails is halved, repeatedly if necessary.
+with y = (x, x', z): mass and bristles together, x eliminated. Newton's method with a difference Jacobian of
+the rates solves each stage. A step in which it fails is halved, repeatedly if necessary.
 """
 
 from __future__ import annotations
@@ -42,7 +42,10 @@ class DeflectedState(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """V = v + g x''(tau, x + g V, V, Z), Z = z + g z'(V, Z); quick, deep: scales of velocity and deflection."""
+    """Stage of a step: V = v + g x''(tau, x + g V, V, Z), Z = z + g z'(V, Z).
+
+    quick, deep: scales of velocity and deflection.
+    """
 
     tau: float
     g: float

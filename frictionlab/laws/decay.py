@@ -31,6 +31,5 @@ def steepest_slope(power: float) -> float:
 
 def exp_decay(lengths: float) -> float:
     """Compute exp(-lengths) for a number of decay lengths >= 0; 0 if it is far below rounding."""
-    return (
-        math.exp(-lengths) if lengths < 60.0 else 0.0
-    )  # an exponential that underflows takes ten times as long
+    # an exponential that underflows takes ten times as long
+    return math.exp(-lengths) if lengths < 60.0 else 0.0

@@ -159,7 +159,7 @@ def _documented(
     for field in inside:
         text = re.sub(rf"(?m)^{field} : ", f"{field} : Dimensional", text)
     _, _, others = inspect.cleandoc(base.__doc__ or "").partition("\n" + SWINGS[1])
-    if others:  # the same velocity, or in its place what the base adds
+    if others:  # the velocity, or one of the fields that the base adds
         entry = rf"(?m)^({SWINGS[0]} : .*)((?:\n    .*)+)"
         text = re.sub(entry, lambda found: f"{found[1]}, optional{found[2]}\n{SWINGS[1]}{others}", text)
     lines = (

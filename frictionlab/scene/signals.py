@@ -37,7 +37,7 @@ class Segments(NamedTuple):
         """Compute values and slopes; at a corner those after it."""
         starts = np.array([line.start for line in self.lines])
         phase = np.mod(tau, self.period)
-        # Before the first corner of a period its last line is still going on.
+        # Before the first corner of a period the last line of the one before continues.
         k = np.searchsorted(starts, phase, side="right") - 1
         since = np.where(k < 0, phase + self.period, phase) - starts[k]
         values, slopes = (np.array([line[field] for line in self.lines])[k] for field in (1, 2))

@@ -99,7 +99,7 @@ class Written(float):
         made.text, made.si = text, si
         return made
 
-    # a float is made again of itself alone
+    # pickle makes a float again from its value alone
     def __getnewargs__(self) -> tuple[float, str, str]:  # type: ignore[override]
         """Return the values from which the number is made again in another process."""
         return float(self), self.text, self.si
@@ -112,7 +112,7 @@ class Written(float):
 
 def _a_number(value: object, checked: ValidatorFunctionWrapHandler) -> float:
     """Accept real numbers, those of numpy included; refuse values that could only be converted to one."""
-    if type(value) is float:  # by far the most, and asking for a Real takes as long as all the rest
+    if type(value) is float:  # most values; the check for a Real takes as long as all the rest
         return cast(float, checked(value))
     if isinstance(value, Unfit):
         raise ValueError(value.what)

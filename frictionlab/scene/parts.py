@@ -58,10 +58,9 @@ class _Force(ScenePart):
     Parameters
     ----------
     unbalance : float, >= 0, optional
-        Unbalance [L]: the force has the amplitude unbalance*frequency^2. Exactly one is given: ``unbalance``
-        or ``amplitude``.
+        Unbalance [L]: the force has the amplitude unbalance*frequency^2.
     amplitude : float, >= 0, optional
-        Amplitude of the force [K_1 L].
+        Amplitude of the force [K_1 L]. Exactly one is given: it or ``unbalance``.
     phase : float, default 0
         Phase of the force, which is the waveform at frequency*tau + phase [degrees].
     waveform : str or dict, optional
@@ -118,10 +117,9 @@ class Drive(_Force):
     Parameters
     ----------
     unbalance : float, >= 0, optional
-        Unbalance [L]: the force has the amplitude unbalance*frequency^2. Exactly one is given: ``unbalance``
-        or ``amplitude``.
+        Unbalance [L]: the force has the amplitude unbalance*frequency^2.
     amplitude : float, >= 0, optional
-        Amplitude of the force [K_1 L].
+        Amplitude of the force [K_1 L]. Exactly one is given: it or ``unbalance``.
     phase : float, default 0
         Phase of the force, which is the waveform at frequency*tau + phase [degrees].
     waveform : str or dict, optional
@@ -156,10 +154,9 @@ class Load(_Force):
     Parameters
     ----------
     unbalance : float, >= 0, optional
-        Unbalance [L]: the force has the amplitude unbalance*(frequency of the drive)^2. Exactly one is given:
-        ``unbalance`` or ``amplitude``.
+        Unbalance [L]: the force has the amplitude unbalance*(frequency of the drive)^2.
     amplitude : float, >= 0, optional
-        Amplitude of the force [K_1 L].
+        Amplitude of the force [K_1 L]. Exactly one is given: it or ``unbalance``.
     phase : float, default 0
         Phase of the force, which is the waveform at its frequency*tau + phase [degrees].
     waveform : str or dict, optional

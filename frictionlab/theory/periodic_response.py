@@ -5,7 +5,8 @@ impulse of force in every period, and, up to a constant, the velocity after a un
 0. V' jumps by 1/mass at 0. The sum up to k = K is taken term by term; the rest is closed by the formula of
 Abel and Plana in its midpoint form, c = K + 1/2, f(k) = H(i k Omega) exp(i k Omega t):
 
-    sum over k > K of f(k) = i integral over y > 0 of [f(c + iy) + exp(-2 pi y) f(c - iy)] / (1 + exp(-2 pi y)),
+    sum over k > K of f(k)
+        = i integral over y > 0 of [f(c + iy) + exp(-2 pi y) f(c - iy)] / (1 + exp(-2 pi y)),
 
 in which exp(i k Omega t) decays. First a body (p + lam)^-2 / mass + d (p + lam)^-3 with the same response to
 high frequencies, in closed form, is subtracted, so that the remaining part of V' is continuous.

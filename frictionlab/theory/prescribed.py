@@ -31,7 +31,7 @@ def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Fl
     ----------
     ratio : array_like of float
         Belt speed over the amplitude of the slip velocity [-], any sign.
-    waveform : str, default "sine"
+    waveform : {"sine", "triangle", "sawtooth", "parabola", "square"}, default "sine"
         Waveform of the slip velocity.
 
     Returns
@@ -421,8 +421,8 @@ def reversal_kick(friction: float, acceleration: float) -> float:
 
     Notes
     -----
-    The result follows from the energy of x'' = a + 2 f exp(-x/d) from rest, by the trapezoidal rule in sqrt(q),
-    exact to rounding.
+    The result follows from the energy of x'' = a + 2 f exp(-x/d) from rest, by the trapezoidal rule in
+    sqrt(q), exact to rounding.
     """
     root = 0.05 * np.arange(-140, 141) + 0.025
     square = root**2

@@ -4,7 +4,8 @@ The rate of a number z_k of the memory depends on slip and on z_k alone. With th
 = dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a
 stage
 
-    (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
+    (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,
+    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
 
 are solved number by number: E_k = (1/(gamma h) - A_k)^-1 and C_k = E_k B_k give k_zk = E_k r_zk + C_k k_u,
 and one block for k_u remains. The cost grows with the count of these numbers, not with its cube.

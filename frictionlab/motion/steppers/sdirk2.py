@@ -1,6 +1,7 @@
 """SDIRK2: singly diagonally implicit Runge-Kutta method of order 2 in two stages.
 
-It is L-stable and stiffly accurate. R. Alexander, SIAM J. Numer. Anal. 14 (1977), 1006: gamma = 1 - 1/sqrt(2),
+It is L-stable and stiffly accurate. R. Alexander, SIAM J. Numer. Anal. 14 (1977), 1006:
+gamma = 1 - 1/sqrt(2),
 
     Y1 = y + h gamma f(Y1),   Y2 = y + h (1 - gamma) f(Y1) + h gamma f(Y2),   y is Y2 at the end,
 

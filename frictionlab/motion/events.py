@@ -65,7 +65,7 @@ def _stop_at_zero(step: Any, slip: Any, rise: Any) -> Any:
             done = abs(trial - h) <= 2e-15 * (tau + h)
             h = trial
             end = step(problem, tau, state, h)
-            # The time has no more digits, though the slip may.
+            # The time has no more digits, even if the slip has.
             if done or high - low <= 4e-16 * (tau + h):
                 break
         return h, end

@@ -81,7 +81,7 @@ def wave_path_integral(table: Any, course: Course, begins: float, start: float, 
         place = course.first + PER_WAVE * j
         frequency = table[place]
         first, half = frequency * start, 0.5 * frequency * lasts
-        # of a sine: what is left of lasts*cos(first) by the mean of the cosines on the way
+        # integral of a sine: lasts*cos(first) less lasts times the mean cosine, over the frequency
         mean = math.sin(half) / half if half > 0.0 else 1.0
         by_sine = lasts * (math.cos(first) - mean * math.cos(first + half)) / frequency
         by_cosine = lasts * (mean * math.sin(first + half) - math.sin(first)) / frequency

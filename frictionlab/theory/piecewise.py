@@ -60,7 +60,7 @@ def oscillation(damping: float, stiffness: float, since: Floats) -> tuple[Floats
     if square > 0.0:
         fade = np.exp(-half * since)
         return fade * np.cos(frequency * since), fade * np.sin(frequency * since) / frequency
-    # the two exponentials by themselves: a hyperbolic function alone would overflow
+    # both exponentials separately: a hyperbolic function would overflow
     slow = np.exp(-(stiffness / (half + frequency)) * since)
     share = -np.expm1(-2.0 * frequency * since)
     sine = since * slow if frequency == 0.0 else slow * share / (2.0 * frequency)

@@ -152,7 +152,9 @@ def mean_prescribed_transverse(ratio: ArrayLike) -> Floats:
 
     size = np.abs(np.asarray(ratio, dtype=np.float64))
     complement = size / np.hypot(1.0, size)
-    first = ellipkm1(np.maximum(complement, 1e-150) ** 2)  # the square of less is zero, where K is infinite
+    first = ellipkm1(
+        np.maximum(complement, 1e-150) ** 2
+    )  # a smaller number has square zero, at which K is infinite
     return np.copysign(2.0 / np.pi * complement * first, ratio)
 
 

@@ -50,7 +50,7 @@ def friction_at_rest(law: Any) -> float:
     if law.memory_kind == "none":
         return float(law.static_friction())
     at_rest: float = law.sliding_friction(0.0)
-    return at_rest or float(law.sliding_friction(CREEP))  # a law that is zero at rest: in slow slip
+    return at_rest or float(law.sliding_friction(CREEP))  # a law that is zero at rest: take slow slip
 
 
 def can_hold(scene: Scene, law: FrictionLaw) -> bool:
@@ -178,7 +178,7 @@ def _against_the_belt(load: Signal, belt: Signal, own: tuple[float, float], time
     gone = path.integral(edges[:-1], edges[1:], places)
     before = np.concatenate([[0.0], np.cumsum(gone)])
     x = before[k] + path.integral(edges[k], tau, k)
-    # less its mean over the period: by the trapezoids of these times
+    # subtract the mean over the period, by the trapezoidal rule at these times
     x = x - float(np.trapezoid(x, tau)) / path.period
     velocity, acceleration = path.at(tau, k)
     pushed = piecewise(load, edges).at(tau, k)[0]

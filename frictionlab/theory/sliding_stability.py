@@ -116,7 +116,7 @@ def loses_energy(mass: Mass, law: Any, belt_speed: float, reach: float) -> bool:
     that friction, lose energy by themselves.
     """
     speed = abs(belt_speed)
-    # where the range is small against the speed the slopes are those of a millionth of it
+    # in a range that is small against the speed, slopes are taken over a millionth of the speed
     speeds = np.concatenate((np.linspace(max(speed - reach, 0.0), speed + reach, 129), speed * _NEAR))
     speeds = speeds[np.abs(speeds - speed) >= 0.9e-6 * speed]
     friction = np.where(speeds > 0.0, law.sliding_friction(speeds), friction_at_rest(law))

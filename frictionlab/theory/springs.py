@@ -89,7 +89,7 @@ def _sums_for(relaxation: Any, fractional: Any, base: float) -> list[Springs]:
     memory = RememberingBody(0.0, relaxation=relaxation, fractional=fractional).memory
     if relaxation is not None:
         return [_scaled(each, base, 1.0) for each in _fitted(lambda p: memory(base * p))]
-    # a power is one at every frequency
+    # one fit of a power serves all frequencies
     size = fractional.coefficient * base**fractional.order
     return [_scaled(each, base, size) for each in _of_power(fractional.order)]
 
@@ -136,7 +136,7 @@ class _Fit:
         orders = np.unique(np.round(np.concatenate([np.arange(1.0, 20.0), rare])))
         self.p = 1j * orders
         values: NDArray[np.complex128] = memory(self.p)
-        # rarer ones stand for their neighbours
+        # each sampled order stands for its neighbours
         self.weights = np.sqrt(np.gradient(orders)) * orders**-FALL / float(np.abs(values[0]))
         self.sought = self._real(values)
 

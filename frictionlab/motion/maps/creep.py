@@ -61,7 +61,7 @@ def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
     pull = friction_in_mode(law, work, w) + a / normal_load(flow.body, instant_near(flow, flow.anchor))
     crawl = WITHOUT_INERTIA * slow
     if far < crawl and length(pull) >= length(friction_in_mode(law, work, crawl * along)):
-        # what is pulled harder than a crawl resists sets off
+        # a mass that is pulled harder than the friction of a crawl starts to slip
         work.start[U] = (2.0 * crawl / length(pull)) * pull
 
 
@@ -170,7 +170,7 @@ def _velocity_error(work: Work, error: Any) -> float:
     ends = length(_stretched(end, scale, lengthens))
     if _weightless(work):
         return max(ends, 0.1 * length(end) / (BELOW * WITHOUT_INERTIA))
-    # a slip that comes to creep loses its speed on the way, and what of that is in error counts
+    # a slip that slows down to creep loses its speed within the step, and the error of that speed counts
     return max(ends, most, work.creep[SLOW] / (BELOW * CLOSE) * length(lengthens))
 
 

@@ -82,7 +82,7 @@ def _away_in_the_plane(flow: Flow, least: float, work: Work, w: complex) -> comp
 
 
 _away = by_dimension(
-    # slip far enough from its reversal for a quotient on its own side
+    # slip so far from its reversal that the quotient stays on one side
     lambda flow, least, work, w: flow.side * max(flow.side * w, least),
     _away_in_the_plane,
 )
@@ -99,7 +99,7 @@ def _keep_by_slip(work: Work, n: int, zero: Any) -> None:
 @fast
 def _deflections_by_slip(flow: Flow, w: Any, work: Work, zero: Any) -> Any:
     n, least = count_of(flow.law), _least(flow, w)
-    # a quotient across the reversal of slip, or across the unloading of what yields, would mix both sides
+    # a quotient across a reversal of slip, or across the unloading of a yielding deflection, would mix both sides
     w = _away(flow, 2.0 * least, work, w)
     share = 0.5 / least
     for column in range(dimension(zero)):
@@ -132,14 +132,14 @@ def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, zero: Any) -> fl
     """Write the quotient of friction by slip on the scale of the slip, and return the shift of the slip."""
     n, swing = count_of(flow.law), swing_of(flow.body) + abs(flow.belt_speed)
     scale, slow, least = work.creep[SCALE], work.creep[SLOW], LOST * swing
-    # a slip that is given is at rest for a moment alone
+    # a prescribed slip is at rest only for a moment
     slowest = NUDGE * (scale if scale > 0.0 else slow) if slow > 0.0 else least
     shift = max(NUDGE * length(w), slowest)
     while True:
         ahead = friction_in_mode(flow.law, work, w + shift * unit(column, zero))
         behind = friction_in_mode(flow.law, work, w - shift * unit(column, zero))
         work.columns[(n + 1) * column + n] = (ahead - behind) / (2.0 * shift)
-        # what rounding leaves of the difference is too little: move the slip by more
+        # rounding dominates the difference: use a larger shift
         if not shift < least or length(ahead - behind) > LOST * (length(ahead) + length(behind)):
             return shift
         shift = min(1e3 * shift, least)
@@ -150,7 +150,7 @@ def _scalars_by_slip(flow: Flow, w: Any, work: Work, zero: Any) -> Any:
     n, least = count_of(flow.law), LOST * (swing_of(flow.body) + abs(flow.belt_speed))
     for column in range(dimension(zero)):
         shift, there = _creep_by_slip(flow, w, work, column, zero), w
-        # rates of scalars do not change with a slip as slow as creep: move it by what matters to them
+        # rates of scalars hardly depend on a slip as slow as creep: shift the slip by an amount that matters to them
         if shift < least:
             shift, there = least, _beside_rest(2.0 * least, w)
         friction_in_mode(flow.law, work, there + shift * unit(column, zero))
@@ -319,7 +319,7 @@ def _by_share(work: Work, flow: Flow, now: Instant, w: Any, zero: Any) -> None:
     for k in range(n):
         stretched = add(block(work.jacobian, 3 * k + 1, zero), diagonal(-strain, 0.0, zero), zero)
         keep(work.jacobian, 3 * k + 1, stretched, zero)
-    # z'/n of a deflection that yields is its turning and what keeps up with the load, of any other the law's over n
+    # z'/n of a yielding deflection is its turning plus the stretching by the load, of any other the law's rate over n
     here = friction_of(law, work.memory, work.moving, w)
     for k in range(n):
         z, yields = work.memory[k], 1.0 if work.mode[k] == YIELDS and work.radius[k] > 0.0 else 0.0
@@ -347,7 +347,9 @@ def linearize(flow: Flow, tau: float, work: Work, zero: Any) -> None:
     for k in range(n):
         work.memory[k] = as_memory(flow.law, work.start[MEMORY + k])
     w = _by_slip(flow, slip_held(flow, now, work.start[U]), work, zero)
-    rub = friction_in_mode(flow.law, work, w)  # and the rates of all, which the quotients by one leave alone
+    rub = friction_in_mode(
+        flow.law, work, w
+    )  # and the rates of all, which quotients by one number do not change
     for k in range(n):
         _by_memory(flow, w, k, work, zero)
     _slope(flow, now, rub, work, zero)

@@ -108,7 +108,7 @@ _side = by_dimension(
 )
 
 _guarded = by_dimension(
-    # on the line the guard of slip sees to it
+    # on the line the guard of slip detects it
     lambda node, w, a, h, zero: False,
     lambda node, w, a, h, zero: dips(node.w, node.a, w, a, h),
 )
@@ -168,7 +168,7 @@ def _at_start(flow: Flow, work: Work, zero: Any) -> Any:
 def _flow_of(case: Case, tau: float, work: Work) -> Flow:
     """Return the flow at this time, with the modes and the side of slip of the state in ``work.start``."""
     flow = anchored(case.law, case.body, case.belt_speed, 1.0, tau)
-    # the side of slip is needed for the rates, and they for the side of a slip that is zero
+    # rates need the side of slip, and the side of a zero slip needs the rates
     w, a = _at_start(flow, work, case.zero)
     begin(flow, a, w, work)
     return anchored(case.law, case.body, case.belt_speed, _side(w, a), tau)
@@ -200,10 +200,10 @@ def _end_of_step(
 ) -> MemoryStep:
     """Decide whether an accurate step of h ends at an event, must be repeated shorter, or stands."""
     w, a = rates_at_end(flow, node.tau + h, work, zero)
-    # the step ends at the first event in it, wherever in the step that is
+    # the step ends at its first event
     guard = lowest(flow, w, a, work)
     if guard.value <= 0.0:
-        # just behind an event a guard is zero to rounding: a step must first get away from it, or never does
+        # just behind an event a guard is zero to rounding: the first step must leave the event, or none does
         stays = node.leaving and work.guards[2 * guard.number] <= -1e-3 * guard.value
         if stays and h * flow.body.frequency > 1e-12:
             return MemoryStep(0.25 * h, True, False)
@@ -285,7 +285,7 @@ def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) ->
         flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, zero), tau)
         node = _depart(flow, ending.ends, work, zero)
         closest = min(closest, length(node.w))
-        # a reversal begins a layer, where steps grow with the way; none is known behind the start of the span
+        # a reversal begins a layer, where steps grow with the path; at the start of the span no reversal is known
         began = _position(flow, work.start[Y]) if ending.ends else began
         h = min(
             usual,
@@ -307,7 +307,7 @@ def repeat(flow: Flow, end: float, first: int, stepping: Stepping, work: Work, z
     last, tau = pace.taken[0] - 1, flow.anchor
     _depart(flow, True, work, zero)
     for k in range(first, last + 1):
-        if creeps(law, work):  # how long a slip takes to come to creep is not seen by steps of another motion
+        if creeps(law, work):  # another motion's steps do not resolve the time in which slip comes to creep
             return -1
         # where events come earlier or later, the last step makes up for it
         h = end - tau if k == last else min(pace.lengths[k], end - tau)
@@ -336,7 +336,7 @@ def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
 
 
 _over_jump = by_contact(
-    # a deflection is what it is under any load
+    # a load does not change a deflection
     lambda work, law, before, after: None,
     _per_new_share,
 )

@@ -48,7 +48,7 @@ def _follows(law: Any, work: Work, k: int, v: Any, z: Any) -> bool:
 def _first_yield(law: Any, work: Work, k: int, v: Any) -> float:
     """Return the deflection along v from which on it no longer follows the slip v; 0 for none."""
     along = v / length(v)
-    usual = work.size[k]  # in steady sliding: mostly where it yields
+    usual = work.size[k]  # deflection in steady sliding, mostly that at yield
     if _follows(law, work, k, v, (1.0 - 1e-12) * usual * along) and not _follows(
         law, work, k, v, usual * along
     ):
@@ -75,10 +75,10 @@ def _yields_at(law: Any, work: Work, k: int, v: Any, radius: float) -> bool:
         share = (1.0 - 1e-9) * radius * part / SHARES
         if not (_follows(law, work, k, v, share * along) and _follows(law, work, k, v, -share * along)):
             return False
-    # unloaded from the surface, too, it follows the slip
+    # unloaded from the surface, it must follow the slip, too
     if not _follows(law, work, k, v, -radius * along):
         return False
-    # at the surface slip turns it, but stretches it no further
+    # at the surface slip may turn the deflection, but not stretch it
     work.memory[k] = radius * along
     return length(law.rate(v, work.memory, k)) <= ALIKE * speed
 
@@ -88,7 +88,7 @@ def _found_radius(law: Any, work: Work, k: int, zero: Any) -> float:
     """Return the radius found from the rates, if it is the same at slips of any speed; else 0."""
     along = 1.0 + 0.0 * zero
     radius = _first_yield(law, work, k, along)
-    # a surface that moves with the speed of slip is none
+    # a radius that depends on the speed of slip is no yield surface
     for exponent in (-4.0, 2.0):
         if radius > 0.0 and not _yields_at(law, work, k, 10.0**exponent * along, radius):
             radius = 0.0
@@ -111,7 +111,7 @@ def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, zero: complex) ->
 
 
 _found_unloaded = by_dimension(
-    # on the line the corner is where slip reverses: the law's own rate is kept up to there
+    # on the line the corner is at the reversal of slip; up to it the law's own rate holds
     lambda law, work, k, zero: False,
     _found_unloaded_in_the_plane,
 )
@@ -141,7 +141,7 @@ def _deflections(law: Any, work: Work, zero: Any) -> None:
     for k in range(count_of(law)):
         radius = law.yield_deflection(k)
         work.radius[k], work.unloads[k] = radius if radius < math.inf else 0.0, 0.0
-        # what remembers its mode has a breakaway in place of both
+        # a deflection that remembers its mode has a breakaway in place of both
         if radius == math.inf and not law.remembers_stick():
             work.radius[k] = 0.0 if law.elastic_unloading() else _found_radius(law, work, k, zero)
             if work.radius[k] == 0.0:
@@ -200,7 +200,7 @@ def _effects(law: Any, body: BodyNumbers, work: Work, zero: Any, least: float) -
         here = work.memory[k]
         far = length(here)
         work.size[k] = far if far > 0.0 else 1.0
-        # how much friction in steady sliding changes with one number, the others as they are
+        # slope of friction in steady sliding over one number, the others fixed
         shift = 1e-3 * work.size[k]
         work.memory[k] = here + shift
         ahead = law.friction(v, work.memory, work.moving)
@@ -221,7 +221,7 @@ def _measure_scalars(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None
     for k in range(count_of(law)):
         work.unit[k] = body.normal_load * work.unit[k] * work.size[k] / body.frequency
         here = work.memory[k]
-        # a law that does not allow the negative of it takes the number for positive
+        # the number is positive if the law does not allow its negative
         work.memory[k] = -here
         work.positive[k] = 0.0 if law.within(work.memory) else 1.0
         work.memory[k] = here
@@ -320,7 +320,7 @@ def pulled(law: Any, memory: Any, alone: Any) -> None:
     if law.turning == 0.0 or law.within(memory):
         return
     for k in range(count_of(law)):
-        # each deflection by itself: the set that slip leads to is a product of theirs
+        # each deflection separately: the set that slip leads to is the product of their sets
         for j in range(count_of(law)):
             alone[j] = 0.0 * memory[j]
         low, high = 0.0, 2.0

@@ -70,7 +70,7 @@ def _unloaded(k: int, a: Any, work: Work, w: Any) -> Guard:
 
 _unloaded_on_the_line = by_contact(
     lambda work, k, a, w: Guard(k, OPEN, 0.0),
-    # a growing load may unload what yields before slip reverses
+    # a growing load may unload a yielding deflection before slip reverses
     lambda work, k, a, w: _unloaded(k, a, work, w),
 )
 
@@ -96,7 +96,7 @@ def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
     if loading <= 0.0:
         return Guard(number, OPEN, 0.0)
     limit = flow.law.breakaway(w, number)
-    # the limit's own rate by a quotient in time, over a small part of the slip
+    # rate of the limit, by a difference quotient in time over a small change of slip
     ahead = 1e-6 * (length(w) + 1e-3 * swing_of(flow.body)) / (length(a) + 1e-300)
     falls = (limit - flow.law.breakaway(w + ahead * a, number)) / ahead
     unit = work.unit[number]
@@ -130,7 +130,7 @@ def _guard_of_deflections(flow: Flow, number: int, w: Any, a: Any, work: Work) -
 
 guard_of = by_scalars(
     lambda flow, number, w, a, work: _guard_of_deflections(flow, number, w, a, work),
-    # friction by scalars is steepest where slip reverses, however far: no step should end just there
+    # friction by scalars is steepest where slip reverses: no step should end exactly there
     lambda flow, number, w, a, work: Guard(number, OPEN, 0.0),
 )
 """guard_of(flow, number, w, a, work): one guard at ``work.memory``, which moves at ``work.moving``; slip w
@@ -179,7 +179,7 @@ def _begin_by_memory(flow: Flow, a: Any, w: Any, work: Work) -> None:
     for k in range(count_of(flow.law)):
         z = work.start[MEMORY + k]
         work.memory[k] = z
-        # rounding of the section may leave a mode that its state has just passed
+        # by rounding, a state may have just passed the end of its mode
         if work.mode[k] == YIELDS and along(z, w) < 0.0:
             work.mode[k] = FOLLOWS
         if work.mode[k] == FOLLOWS and breakaway(flow, k, w, a, work).value <= 0.0:
@@ -224,9 +224,9 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, zer
         # just beyond the event, never before it: the next step starts in the new mode
         if -within <= guard.value <= 0.0 or high - low <= 4e-16 * (tau + high):
             break
-        # half of what may remain beyond: an approach from the near side does not end there
+        # aim half the tolerance beyond zero, since steps that stay in front of the event do not end the search
         trial = h - (guard.value + 0.5 * within) / guard.rate if guard.rate < 0.0 else low
-        # on a bend Newton's steps may creep towards one end: halve now and then
+        # on a curved guard Newton's steps may creep towards one end: halve now and then
         h = trial if low < trial < high and turn % 4 < 3 else 0.5 * (low + high)
         step(flow, tau, h, work, zero)
     # the last step tried need not be the one that ends just beyond
@@ -237,7 +237,7 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, zer
 
 _unloads_by_reversal = by_contact(
     lambda work: True,
-    # a falling load may drag on what yields although slip reverses
+    # under a falling load a deflection may go on yielding although slip reverses
     lambda work: False,
 )
 

@@ -236,7 +236,7 @@ def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
     leg, tau, state = node.leg, node.tau, node.state
     after, limit = leg.side * slip_at(leg, tau + h, taken.v), h
     if after <= 0.0 and node.leaving:
-        # just behind a reversal slip is zero to rounding: a step must first get away from it, or slip never does
+        # just behind a reversal slip is zero to rounding: the first step must leave the reversal, or slip never does
         if h * leg.body.frequency > 1e-12:
             return PathStep(REPEAT, 0.25 * h, taken)
         return PathStep(TURN, h, taken)
@@ -259,7 +259,7 @@ def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
     ending = _until_turn(node, taken, h)
     if ending.verdict == REPEAT:
         return ending
-    # where friction saturates for good it has a corner
+    # friction has a corner at its final saturation
     beyond = _path_at(leg, tau + ending.h, ending.taken.x) > corner * (1.0 + 1e-14)
     if node.path < corner < math.inf and beyond:
         h, taken = _until_path(leg, tau, node.state, ending.h, corner)
@@ -285,7 +285,7 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
     The next leg begins with the deflection at the end of this one.
     """
     leg, taken = node.leg, ending.taken
-    # A way of rounding size may shrink: the corner at its end, once passed, would be met again for ever.
+    # Rounding may shorten a path: the corner at its end, once passed, would then be met again for ever.
     path = max(node.path, _path_at(leg, node.tau + ending.h, taken.x))
     path = node.corner if ending.verdict == SATURATE else path
     if ending.verdict == TURN:
@@ -361,7 +361,7 @@ def _path_piece(case: Case, tau: float, end: float, image: Carried, stepping: St
         leg, tau, state = node.leg, node.tau, node.state
         w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
-        # in the layer behind a reversal steps grow with the way, lest a tolerance jumps over it
+        # in the layer behind a reversal steps grow with the path, so that no tolerance jumps over it
         layered = node.corner > node.path or node.corner == math.inf
         ahead = _longest(leg, node.path, share, w, rate) if layered else 1e300
         h = min(h, ahead, longest, end - tau)

@@ -162,8 +162,8 @@ def _rest(case: Case, at: Progress, end: float, room: Workspace, track: Track) -
     room.totals[POSITION] += lasts * place.x + belt_path_integral(body, belt_speed, tau, until)
     x = place.x + belt_path(body, belt_speed, tau, until)
     held, _rate, _bend = holding_force(body, belt_speed, instant_at(body, until), x)
-    # A shifted mass is carried along as far as this one. Slip sets off along the held force, which the shift turns
-    # by Im(dF conj(F))/|F|^2; when it does, changes the state by nothing of first order: slip begins from zero.
+    # The belt carries a shifted mass as far as this one. Slip starts along the holding force, which the shift turns
+    # by Im(dF conj(F))/|F|^2. A change of the starting time has no effect of first order: slip begins from zero.
     for k in range(DIRECTIONS):
         shift = tangent.x[k]
         tangent.total[k] += lasts * shift
@@ -269,7 +269,7 @@ def _slip(case: Case, at: Progress, end: float, accuracy: float, room: Workspace
         h = min(h, 0.8 * near.wait)
     if h < SHORTEST_SLIP * span(case.body) and end - place.tau > h:
         return _give_way(case, place, near, room, track)
-    # the polynomial of the step before goes on into this one, a step that is taken shorter is a part of its own
+    # guess by the polynomial of the previous step, continued; a step tried shorter is a part of its own polynomial
     if at.before > 0.0 and h < 2.0 * at.before:
         guess_on(place, 1.0, 1.0 + h / at.before, step)
     elif at.before < 0.0:
@@ -280,7 +280,7 @@ def _slip(case: Case, at: Progress, end: float, accuracy: float, room: Workspace
     if not solve_step(case, place, h, step):
         return Progress(place, False, at.leaving, 0.3 * h, 0.0)
     error = step_error(h, accuracy, step)
-    # five stages: the highest of their Legendre polynomials, which the error is read from, falls as h^5
+    # five stages: the coefficient of the highest Legendre polynomial, the measure of the error, falls as h^5
     growth = min(4.0, 0.9 / (error + 1e-300) ** 0.2)
     if error > 1.0:
         return Progress(place, False, at.leaving, max(0.2, growth) * h, -h)

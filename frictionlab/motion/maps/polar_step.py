@@ -140,7 +140,7 @@ def friction_slope(case: Case, r: float) -> float:
 @inner
 def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
     """Write positions, friction, and forces turned so that the slip is real, at the stages."""
-    # slip w = r exp(i theta): friction acts against r alone, what turns slip is the force across it
+    # slip w = r exp(i theta): friction acts against r alone, the force across the slip turns it
     for j in range(STAGES):
         room.along[j] = complex(math.cos(room.theta[j + 1]), math.sin(room.theta[j + 1]))
         room.v[j] = room.carried[j] + room.r[j + 1] * room.along[j]

@@ -54,7 +54,7 @@ class Work(NamedTuple):
 
     start: Any  # where the step starts
     end: Any  # where it ends
-    stage: Any  # at which rates are asked for
+    stage: Any  # argument of the rates
     rates: Any
     slope: Any  # derivative of the rates by time
     increments: Any  # of every stage

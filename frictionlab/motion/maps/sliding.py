@@ -68,7 +68,7 @@ class Mapped(NamedTuple):
     closest: float  # smallest slip speed at a node
     released: float  # when rest ended last; -1: never
     steps: int  # -1: gave up
-    forces: Any  # of what of the body relaxes, as one number, of the deviation
+    forces: Any  # relaxing forces of the deviation, as one number
 
 
 MOST_STEPS = 200_000
@@ -340,7 +340,7 @@ def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase
 def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
     """Return the state of the deviation with which slip begins."""
     body, tau = problem.body, rest.tau
-    # slip sets off with the velocity that the balance of momentum gives it
+    # slip starts with the velocity from the balance of momentum
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
     u = u - reference_velocity(body, problem.sine, problem.cosine)
     y = rest.x - reference_position(body, tau)
@@ -425,7 +425,7 @@ def _sliding_piece(
             if rest.stuck > 0.0 and rest.tau < end:
                 released = tau + rest.stuck
             tau, resting, leaving, closest, h = rest.tau, False, True, 0.0, 0.1 * longest
-            steps += 1  # rest that ends where it begins takes no step, and no time
+            steps += 1  # a rest of no length takes no step and no time, but counts
             body = at_rest_until(body, belt_speed, tau)
             problem = anchored(law, body, belt_speed, rest.side, tau)
             state = _after_rest(problem, rest, end)

@@ -1,8 +1,8 @@
 """Step of a mass and the memory of its contact by Rodas5P, with elimination along an arrow matrix.
 
-The rate of a number z_k of the memory depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k, B_k
-= dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a
-stage
+The rate of a number z_k of the memory depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k,
+B_k = dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of
+a stage
 
     (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,
     (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
@@ -161,8 +161,8 @@ def _solve(i: int, flow: Flow, h: float, work: Work, zero: Any) -> None:
     """Solve for the increments of stage i, from its right-hand sides in ``work.rates``."""
     n, body = count_of(flow.law), flow.body
     first = rows_of(flow) * i
-    # each number with the velocity kept, then the mass, then what its change of velocity adds to each number
-    alone = 0.0 * zero  # friction of what the deflections would do if the mass kept its velocity
+    # each number at unchanged velocity, then the mass, then the effect of its change of velocity on each number
+    alone = 0.0 * zero  # friction by the increments of the deflections at unchanged velocity
     for k in range(n):
         moved = apply(block(work.factors, 2 * k, zero), work.rates[MEMORY + k])
         work.increments[first + MEMORY + k] = moved
@@ -269,7 +269,7 @@ def step(flow: Flow, tau: float, h: float, work: Work, zero: Any) -> float:
         work.rates[U] = step_variable_rate(flow.law, work, work.stage[U], work.rates[U])
         _right_side(i, flow, h, work)
         _solve(i, flow, h, work, zero)
-    # the last increment is the difference to the embedded method, and ends the step
+    # the last increment, the difference to the embedded method, completes the step
     last = size * (STAGES - 1)
     for row in range(size):
         work.end[row] = work.stage[row] + work.increments[last + row]

@@ -70,7 +70,7 @@ def periods_at_rest(law: Any, body: BodyNumbers, belt_speed: float, y: Any) -> f
 
     It is at least one.
     """
-    if look_ahead(body) < 1e300:  # the force of such springs grows as nobody looks at here
+    if look_ahead(body) < 1e300:  # the growth of the force of such springs is not bounded here
         return 1.0
     x, travel, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
     last = _velocity_at(in_piece(body, pieces - 1), belt_speed, span(body))
@@ -107,7 +107,7 @@ def _room_at_rest(law: Any, body: BodyNumbers, belt_speed: float, x: Any, start:
         now = instant_at(body, tau)
         held, _rate, _bend = holding_force(body, belt_speed, now, x + belt_path(body, belt_speed, start, tau))
         room = min(room, holds * normal_load(body, now) - abs(held))
-    # Between two samples the held force may exceed the straight line by so much.
+    # Between two samples the held force may exceed the straight line by curvature/8 times their distance squared.
     curvature = holding_curvature(body, belt_speed, x) + holds * normal_load_curvature(body)
     return room - 0.125 * curvature * (period / samples) ** 2
 
@@ -154,7 +154,7 @@ def _start_in_the_plane(
     # at the limit the force must first grow: the series in time, turned so that the held force is real
     first = rate * along.conjugate()
     b2 = 0.5 * (first.real - rise)
-    if not b2 > 0.0:  # the force falls back below the limit at once: what slip there is stays below rounding
+    if not b2 > 0.0:  # the force falls back below the limit at once: slip stays below rounding
         return Start(1e-6 / body.frequency, along * 1e-3 * accuracy, 0.0 * held)
     turn = first.imag / limit
     second = (0.5 * bend - restoring_force(beside, 0.0 * held, b2 * along)) * along.conjugate()
@@ -201,7 +201,7 @@ def end_of_rest(case: Case, tau: float, x: Any, end: float) -> float:
     below = abs(held) < limit * (1.0 - 1e-13)
     if not below and (rising or abs(held) > limit * (1.0 + 1e-13)):
         return tau
-    # At the limit itself the search would end where it begins: it sets out a moment later.
+    # At the limit itself the search would end where it begins: it begins a moment later.
     begin = tau if below else min(end, tau + 1e-9 / body.frequency)
     return _stick_end(law, body, belt_speed, begin, x + belt_path(body, belt_speed, tau, begin), end)
 
@@ -222,7 +222,7 @@ def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> 
     side = 1.0 if held.real > 0.0 else -1.0
     beside = slopes_at(body, x, belt_velocity(body, belt_speed, now) + 0.0 * x)
     t, w, path = _start(case, now, accuracy, beside, rate, bend, held)
-    # The balance of momentum over the start: what neither spring nor slip has taken of the impulse, friction has.
+    # Balance of momentum over the start: friction has the impulse that neither spring nor slip has taken.
     pulled = resting_friction(body, belt_speed, tau, tau + t, x)
     pulled = pulled - (restoring_force(beside, 0.0 * x, path) + w) / body.normal_load
     x = x + belt_path(body, belt_speed, tau, tau + t) + path

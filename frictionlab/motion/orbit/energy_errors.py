@@ -58,14 +58,14 @@ def energy_errors(
     apart = np.abs(read["mean_friction"] - means.value)
     force = mass.normal_load * (apart + means.error + _ROUNDING) * period
     if scenes[0].degrees_of_freedom:
-        # The balances of the body and of the contact: what they miss, and a mean of the panels that is not the mean.
+        # Residual of the balances of body and contact, and difference between the mean of the panels and the mean.
         missing = np.abs(read["energy_input"] - read["energy_viscous"] - read["energy_friction"])
         missing = missing + mass.normal_load * np.fmax(apart - means.error, 0.0) * period * (belt + swing)
         put_in, viscous = put_in + (missing if load > 0.0 else 0.0), viscous + missing
         friction = put_in + viscous
-    else:  # the motion is given: friction alone can be wrong
+    else:  # the motion is prescribed: only friction can be wrong
         friction = 4.0 * force * swing
-    if scenes[0].remembers:  # read as what the load gives less what friction takes
+    if scenes[0].remembers:  # computed as work of the load less work of friction
         friction = put_in + belt * force + _ROUNDING * np.abs(read["energy_friction"])
         viscous = put_in + friction
     contact = friction + force * belt

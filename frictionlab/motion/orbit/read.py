@@ -78,7 +78,7 @@ def read_columns(
     else:
         found = np.array([_read_one(scene, orbit(i)) for i, scene in enumerate(scenes)])
     if scenes[0].remembers:
-        # What remembers takes the rest: no force of the body is recorded.
+        # Forces of a body that remembers are not recorded: its dissipation is the rest of the balance.
         put_in, viscous, friction = (
             READ.index(f"energy_{name}") for name in ("input", "viscous", "friction")
         )
@@ -192,9 +192,7 @@ class Sums(NamedTuple):
     moved: complex  # integral of the velocity: zero, were the motion exactly periodic
     pressed: complex  # integral of the friction force
     swing: float  # integral of the squared velocity
-    misfit_load: (
-        float  # what velocities and positions differ by in each panel, times its largest load, added up
-    )
+    misfit_load: float  # difference of velocities and positions in each panel times its largest load, summed
     misfit_speed: float  # the same, times its largest speed
 
 
@@ -209,8 +207,8 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     # Means and energies, by the Gauss-Lobatto weights of every panel.
     sums = _integrals(panels, mass, belt_speed, slips)
     period = sums.duration
-    # The mean friction force, in presliding many times the loads, would do work on the little by which the recorded
-    # motion is not periodic. A periodic motion has no mean velocity: what there is of it is taken out.
+    # The recorded motion is not quite periodic. The mean friction force, in presliding many times the loads,
+    # would do work on that drift. A periodic motion has no mean velocity, so the work on the drift is subtracted.
     drift = _power(sums.pressed, sums.moved) / period
     # Reversals of slip are not counted in stick; a slip that is rounding of the velocity has no sign. The friction
     # force changes its sign in stick, too, where the slip is zero.
@@ -304,13 +302,13 @@ def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: floa
         velocity, rub = v[node], friction[node]
         w = slip(body, belt_speed, now, velocity)
         slips[node] = w
-        # Each direction by itself: of the one across the belt nothing may be known.
+        # Each direction separately: friction across the belt may be unknown.
         position = position + complex(weight * x[node].real, weight * x[node].imag)
         friction_impulse = friction_impulse + complex(weight * rub.real, weight * rub.imag)
         harmonic_1 = harmonic_1 + weight * velocity.real * turn.conjugate()
         harmonic_2 = harmonic_2 + weight * velocity.imag * turn.conjugate()
-        # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
-        # the contact is heat; the rest is the work on the belt.
+        # Powers of the load, of the dashpots (springs return their energy) and of friction. The part of friction in
+        # the contact is heat, the rest is work on the belt.
         pressed = weight * body.normal_load
         pushed = load(body, now)
         put_in = put_in + weight * _power(pushed, velocity)
@@ -405,7 +403,7 @@ def _sign_changes(values: Any, stick: Any, skip_stick: bool) -> int:
             value = values[panel, node]
             if (skip_stick and stick[panel]) or value == 0.0:
                 continue
-            # The period is a circle: the last sign is compared with the first, too.
+            # The motion is periodic: the last sign is compared with the first, too.
             first = value if first == 0.0 else first
             changes += 1 if last * value < 0.0 else 0
             last = value

@@ -132,7 +132,7 @@ def panel_writer(state_at: Any) -> Any:
 
     @inner
     def note_panel(track: Track, tau: float, h: float, stick: bool, *given: Any) -> None:
-        # Room for no panel at all is how maps are asked not to record.
+        # A track without room for a panel means that nothing is recorded.
         row = track.filled[0]
         if row == track.stick.size:
             return

@@ -118,7 +118,7 @@ def work_of(orbit: Orbit, scene: Scene) -> float:
 def _work(orbit: Orbit, normal_load: float, panels: NDArray[np.int64], places: Floats) -> Floats:
     """Return the work of friction on the body from the beginning of the orbit to places in these panels."""
     power = orbit.friction.real * orbit.v.real
-    # across the belt friction may not be known, where nothing moves
+    # friction across the belt may be unknown where nothing moves
     power = -normal_load * (power + np.where(orbit.v.imag == 0.0, 0.0, orbit.friction.imag * orbit.v.imag))
     half = 0.5 * (orbit.tau[:, -1] - orbit.tau[:, 0])
     before = np.concatenate(([0.0], np.cumsum(half * (power @ WEIGHTS))))
@@ -265,7 +265,7 @@ def _moments(turned: Floats) -> NDArray[np.complex128]:
     turning = np.exp(-1j * np.minimum(turned, _STEEP)[..., None] * _GAUSS)
     found: NDArray[np.complex128] = np.asarray(turning @ _LEGENDRE_GAUSS, dtype=np.complex128)
     x = np.maximum(turned, _STEEP)
-    last: Floats = np.cos(x) / x  # of the orders -1 and 0
+    last: Floats = np.cos(x) / x  # orders -1 and 0
     bessel: Floats = np.sin(x) / x
     for n in range(PER_PANEL):
         found[..., n] = np.where(turned < _STEEP, found[..., n], 2.0 * (-1j) ** n * bessel)

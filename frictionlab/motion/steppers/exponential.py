@@ -45,7 +45,7 @@ def kick(
     body, k = problem.body, start.k
     push, pressed = load_at(problem, k, MIDDLE), normal_load_at(problem, k, MIDDLE)
     belt = belt_at(problem, k, MIDDLE)
-    # The explicit midpoint rule: half a step tells the velocity at which friction and dashpots act.
+    # Explicit midpoint rule: half a step gives the velocity at which friction and dashpots act.
     mu = resistance(problem, k, start.v - belt, at.z)
     middle = start.v + 0.5 * h * acceleration_under(body, push, pressed, at.x, start.v, mu)
     mu = resistance(problem, k, middle - belt, at.z)
@@ -66,7 +66,7 @@ def exponential_step(
     k, half = start.k, 0.5 * h
     first, middle = belt_at(problem, k, FIRST), belt_at(problem, k, MIDDLE)
     last = belt_at(problem, k, LAST)
-    # Drift: over either half the belt goes at the mean of its velocities at the ends.
+    # Drift: in each half the belt has the mean of its velocities at the ends of that half.
     x = start.x + half * start.v
     z = advance(problem, k, FIRST, half, start.v - 0.5 * (first + middle), problem.memory[0])
     v, mu = kick(acceleration_under, resistance, problem, start, h, Drift(x, z))

@@ -108,14 +108,14 @@ def project_impulse(contact: ContactStep, theta: float, before: Any, q: Any) -> 
 
     before: slip at the start of the step.
     """
-    # What brings the slip to zero at the end of the step lies in the disk of the static coefficient: it sticks.
+    # The impulse that brings slip to zero lies in the disk of the static coefficient: the mass sticks.
     if length(q) <= contact.weight * contact.law.static_friction():
         return ContactEnd(0.0 * q, q)
-    # Otherwise friction is directed by the slip theta into the step, for which the same balance is written.
+    # Otherwise friction acts along the slip at theta, for which the same balance is written.
     share = (1.0 - theta) / theta
     late = ContactStep(contact.law, contact.weight, contact.mass_1 / theta, contact.mass_2 / theta)
     pushed = q + over(1.0 / (share * contact.mass_1 + TINY), 1.0 / (share * contact.mass_2 + TINY), before)
-    # That slip vanishes where the push on it is within the disk of the sliding coefficient: the step passes rest.
+    # That slip vanishes if its push lies in the disk of the sliding coefficient: the step passes rest.
     if length(pushed) <= contact.weight * contact.law.sliding_friction(0.0):
         return ContactEnd(-share * before, pushed)
     speed = _slip_speed(late, pushed)
@@ -133,18 +133,18 @@ def moreau_step(expanded: Any, slopes_at: Any, problem: Any, start: StepStart, h
     """
     theta, x, v = problem.stepper.theta, start.x, start.v
     late, left, body = theta * h, 1.0 - theta, slopes_at(problem.body, x, v)
-    # The mass that an impulse moves along either axis: springs and dashpots are implicit, and add to it.
+    # Effective mass along each axis: implicit springs and dashpots add to it.
     mass_1 = 1.0 + late * (body.damping_mean + body.damping_split)
     mass_1 += late * late * (body.stiffness_mean + body.stiffness_split)
     mass_2 = 1.0 + late * (body.damping_mean - body.damping_split)
     mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
-    # Loads are those of the instant theta into the step: its middle or its end.
+    # Loads at the instant theta: the middle of the step, or its end.
     k, part = start.k, int(2.0 * theta)
     held = expanded(problem.body, x, v, x + late * left * v, left * v)
     pushed = v + h * (load_at(problem, k, part) - held)
     pressed, belt = normal_load_at(problem, k, part), belt_at(problem, k, LAST)
     contact = ContactStep(problem.law, h * pressed, mass_1, mass_2)
-    # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.
+    # Balance for the slip at the end of the step: mass * w1 + P = push less momentum of the belt velocity.
     pushed = pushed - momentum(mass_1, mass_2, belt)
     w, impulse = project_impulse(contact, theta, v - belt_at(problem, k, FIRST), pushed)
     after = w + belt

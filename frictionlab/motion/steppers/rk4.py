@@ -30,25 +30,25 @@ def rk4_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
     n, half, sixth = count_of(law), 0.5 * h, h / 6.0
     stage, rate, total = room(law, 1, 0, memory[0]), room(law, 1, 0, memory[0]), room(law, 1, 0, memory[0])
     a1, f1 = rates(problem, k, FIRST, x, v, memory, rate)
-    # The first half step: at the rates of the start.
+    # First half step, with the rates of the start.
     v2 = v + half * a1
     for i in range(n):
         total[i] = rate[i]
         stage[i] = memory[i] + half * rate[i]
     a2, f2 = rates(problem, k, MIDDLE, x + half * v, v2, stage, rate)
-    # The same half step anew, at the rates found there.
+    # The same half step, with the rates found at its end.
     v3 = v + half * a2
     for i in range(n):
         total[i] = total[i] + 2.0 * rate[i]
         stage[i] = memory[i] + half * rate[i]
     a3, f3 = rates(problem, k, MIDDLE, x + half * v2, v3, stage, rate)
-    # The whole step, at the rates of its middle.
+    # Whole step, with the rates of its middle.
     v4 = v + h * a3
     for i in range(n):
         total[i] = total[i] + 2.0 * rate[i]
         stage[i] = memory[i] + h * rate[i]
     a4, f4 = rates(problem, k, LAST, x + h * v3, v4, stage, rate)
-    # Simpson's weights; the sum of z' is kept as it grows, for there may be many numbers.
+    # Simpson's weights; only the running sum of z' is kept, since there may be many numbers.
     for i in range(n):
         problem.ahead[i] = memory[i] + sixth * (total[i] + rate[i])
     return StepEnd(

@@ -157,7 +157,7 @@ def two_stages(
 
     swing: amplitude of the variation of the belt's velocity.
     """
-    # Scales of this step: of velocity from body and slip, of deflection from what slip can do within the step.
+    # Scales of this step: velocity from body and slip, deflection from the largest slip path in the step.
     g, late = GAMMA * h, (1.0 - GAMMA) * h
     x, v, z = start.x, start.v, start.z
     quick = length(v) + length(v - problem.belt_speed) + length(x) * 1e-3 + 1e-9 + swing
@@ -181,7 +181,7 @@ def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float, swing: flo
     belt's velocity. Steps in which Newton's method fails are halved. The state is NaN if even 2^-24 of the
     step fails, or if there are too many parts.
     """
-    # Parts of the step, each a half of the one that failed: what is done is kept.
+    # Parts of the step, each half as long as the one that failed; accepted parts are kept.
     state = DeflectedState(start.x, start.v, problem.memory[0], 0.0 * start.v)
     done, part, least, tried = 0.0, h, h * 0.5**MOST_HALVINGS, 0
     while done < h * (1.0 - 1e-9):

@@ -86,7 +86,7 @@ def growth_of(body: BodyNumbers, taken: Any, accuracy: float) -> float:
     """Return the growth after a step of DOP853, by both error estimates (Hairer et al., 1993, II.10)."""
     fifth = squared(body, taken.x_error5, taken.v_error5)
     third = squared(body, taken.x_error3, taken.v_error3)
-    # Nothing divided by nothing would not be a number.
+    # 1e-300 avoids 0/0.
     error = fifth / math.sqrt(fifth + 0.01 * third + 1e-300) / accuracy
     return _growth_at_order_8(error)
 

@@ -1,23 +1,34 @@
-"""Every public name has a docstring with an example, and every example gives what it shows."""
+"""Every public name has a docstring in numpydoc form, and every example in it gives what it shows."""
 
 from __future__ import annotations
 
 import doctest
 import inspect
+import re
 from functools import cached_property
 from pathlib import Path
+from types import FunctionType, MethodType
 from typing import Any
 
 import matplotlib
 import pytest
 
 import frictionlab as fl
+from frictionlab.analysis.fit.best_waveform import BestWaveform
+from frictionlab.analysis.fit.equivalent import Equivalent, Experiments
+from frictionlab.analysis.fit.result import FittedLaws
 from frictionlab.analysis.needs.needs import Needs
 from frictionlab.runner.run import Run
 
-RESULTS = fl.Comparison, fl.SteadyState, Run, Needs
+RESULTS = fl.Comparison, fl.SteadyState, Run, Needs, FittedLaws, Equivalent, Experiments, BestWaveform
 """What users are handed: every method and property of theirs is public."""
 METHODS = {fl.Scene: ["with_"], fl.Study: ["of", "to_yaml", "cases"]}
+HANDED = *RESULTS, fl.Study
+"""Classes that users do not construct: their fields are attributes."""
+
+SECTIONS = ["Parameters", "Attributes", "Returns", "Raises", "Notes", "References", "Examples"]
+"""Sections in the order of numpydoc."""
+BAD_BEGINNINGS = "The", "What", "Whether", "Of", "How", "Where"
 
 
 def _members(kind: type[Any]) -> dict[str, Any]:
@@ -38,8 +49,110 @@ PUBLIC |= {
 }
 
 
+def _sections(docstring: str) -> dict[str, str]:
+    """Text of each numpydoc section by its name; '' for what stands before the first."""
+    first, *others = re.split(r"^(\S.*)\n(-+)\n", f"{docstring}\n", flags=re.MULTILINE)
+    assert [len(name) for name in others[0::3]] == [len(line) for line in others[1::3]], "lines below names"
+    return {"": first} | dict(zip(others[0::3], others[2::3], strict=True))
+
+
+def _entries(text: str) -> dict[str, tuple[str, str]]:
+    """Type and meaning by the name of an entry: ``name : type``, and the meaning indented below."""
+    found = re.findall(r"^(\S.*)\n((?:(?: +\S.*)?\n)*)", text, re.MULTILINE)
+    heads = [(head.partition(" : "), " ".join(meaning.split())) for head, meaning in found]
+    return {name: (kind, meaning) for (name, _, kind), meaning in heads}
+
+
+def _wanted(thing: Any) -> set[str]:
+    """Names of the parameters of a function, or of the fields of a class. ``label`` is told once for all."""
+    if not isinstance(thing, type | FunctionType | MethodType):
+        return set()
+    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    taken = inspect.signature(thing).parameters.values()
+    return {f"{stars.get(each.kind, '')}{each.name}" for each in taken} - {"self", "label"}
+
+
+def _returns(thing: Any) -> bool:
+    said = isinstance(thing, FunctionType | MethodType) and inspect.signature(thing).return_annotation
+    return said not in (False, None, "None")
+
+
+def mistakes(thing: Any) -> list[str]:
+    """Tell in which points the docstring of a public name is not in numpydoc form."""
+    docstring = inspect.getdoc(thing) or ""
+    parts, (first, second) = _sections(docstring), [*docstring.split("\n"), ""][:2]
+    names = [name for name in parts if name]
+    fields = _entries(parts.get("Attributes" if thing in HANDED else "Parameters", ""))
+    returned, raised = (_entries(parts.get(name, "")) for name in ("Returns", "Raises"))
+    wanted, told = (
+        _wanted(thing),
+        [*fields.items(), *((name, ("-", why)) for name, (_, why) in raised.items())],
+    )
+    found = {
+        "first line is no sentence": not first.endswith(".") or second,
+        "a colon, which napoleon reads as a type": isinstance(thing, property | cached_property)
+        and ": " in first,
+        "first line begins with": first.partition(" ")[0] in BAD_BEGINNINGS,
+        "sections": names != [name for name in SECTIONS if name in names],
+        "not told": sorted(wanted - set(fields)),
+        "told, but not there": sorted(set(fields) - wanted - {"label"}),
+        "without a type or a meaning": [name for name, both in told if "" in both],
+        "Returns": bool(returned) != _returns(thing) or any(not meaning for _, meaning in returned.values()),
+    }
+    return [f"{point}: {where}" for point, where in found.items() if where]
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_a_public_name_has_a_docstring_in_numpydoc_form(name: str) -> None:
+    assert mistakes(PUBLIC[name]) == []
+
+
+def _right(speed: float, **others: float) -> float:
+    """Return a number.
+
+    Parameters
+    ----------
+    speed : float
+        Speed.
+    **others : float
+        Others.
+
+    Returns
+    -------
+    float
+        Number.
+    """
+    return speed
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "point"),
+    [
+        ("Return a number.", "Return a number", "first line is no sentence: True"),
+        ("Return a number.", "The number.", "first line begins with: True"),
+        ("speed : float\n        Speed.\n    ", "", "not told: ['speed']"),
+        ("**others : float", "load : float", "told, but not there: ['load']"),
+        ("speed : float", "speed", "without a type or a meaning: ['speed']"),
+        ("        Speed.\n", "", "without a type or a meaning: ['speed']"),
+        ("\n    Returns\n    -------\n    float\n        Number.\n", "", "Returns: True"),
+        ("Returns\n    -------", "Result\n    ------", "sections: True"),
+    ],
+)
+def test_a_docstring_in_another_form_is_noticed(right: str, wrong: str, point: str) -> None:
+    def other(speed: float, **others: float) -> float:
+        return speed
+
+    told = _right.__doc__ or ""
+    assert mistakes(_right) == []
+    assert right in told
+
+    other.__doc__ = told.replace(right, wrong)
+    assert point in mistakes(other)
+
+
 def _examples(thing: Any) -> list[doctest.Example]:
-    return doctest.DocTestParser().get_examples(inspect.getdoc(thing) or "")
+    docstring = inspect.getdoc(thing) or ""
+    return doctest.DocTestParser().get_examples(_sections(docstring).get("Examples", ""))
 
 
 @pytest.mark.parametrize("name", PUBLIC)
@@ -48,6 +161,12 @@ def test_the_example_of_a_public_name_gives_what_it_shows(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     matplotlib.use("agg")
+    owner, _, member = name.rpartition(".")
+    if owner and not _examples(PUBLIC[name]):  # then the example of its class uses it
+        assert any(f".{member}" in each.source for each in _examples(PUBLIC[owner])), (
+            f"no example uses {name}"
+        )
+        return
     test = doctest.DocTest(_examples(PUBLIC[name]), {}, name, None, None, None)
     said: list[str] = []
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import importlib.util
 import inspect
 import re
@@ -56,25 +57,25 @@ def test_what_scrolls_is_reached_by_keyboard(pages: dict[str, str]) -> None:
 
 
 def test_python_s_pages_tell_the_type_of_every_parameter(pages: dict[str, str]) -> None:
-    text = pages["api"] + pages["api_scenes"]
-    shared = "".join(each.partition("</table>")[0] for each in text.split('id="shared-')[1:])
+    text = pages["api"] + pages["api_scenes"] + pages["write_a_law"]
     entries = dict(re.findall(r'id="frictionlab\.(\w+)">(.*?)(?=<dt class="sig|</section>)', text, re.DOTALL))
-    shown = {
-        name: entry
-        for name, entry in entries.items()
-        if 'class="parameters' in entry or "shared ones" in entry
-    }
+    functions = {name for name in fl.__all__ if inspect.isfunction(getattr(fl, name))}
 
-    assert set(shown) >= {"steady_state", "curve", "run", "Scene", "Dimensional", "LuGre", "March"}
-    for name, entry in shown.items():
-        rows = re.findall(r"<tr[^>]*><td>(.*?)</td>\s*<td>(.*?)</td>", entry + shared, re.DOTALL)
-        told = " ".join(re.sub(r"<[^>]+>", "", first) for first, kind in rows if re.sub(r"<[^>]+>", "", kind))
+    assert set(entries) >= functions | {"Scene", "Dimensional", "Study", "SteadyState", "LuGre", "March"}
+    for name, entry in entries.items():
+        told = dict(re.findall(r"<strong>\**(\w+)</strong>(?: \((.+?)\))? \N{EN DASH} \S", entry, re.DOTALL))
         taken = set(inspect.signature(getattr(fl, name)).parameters) - {"label"}
-        assert [parameter for parameter in taken if not re.search(rf"\b{parameter}\b", told)] == [], name
+        assert [each for each in taken if not told.get(each)] == [], name
 
 
-def test_what_is_raised_is_told_or_nothing_is_said_of_it(pages: dict[str, str]) -> None:
+def test_what_is_raised_has_a_reason_and_a_row_in_the_table(pages: dict[str, str]) -> None:
+    listed = set(
+        re.findall(r"<code[^>]*><span[^>]*>(\w+)<", pages["api"].partition('id="what-is-raised"')[2])
+    )
     for name in ("api", "api_scenes"):
-        told = re.findall(r"<strong>Raises</strong>(.*?)</p>", pages[name], re.DOTALL)
-        assert told
-        assert [each for each in told if not re.search(r"\w", re.sub(r"<[^>]+>", "", each))] == []
+        fields = re.findall(r">Raises<.*?</dd>", pages[name], re.DOTALL)
+        found = [re.findall(r"<strong>(\w+)</strong>(?: \N{EN DASH} (\S))?", each) for each in fields]
+        assert found
+        assert all(found)
+        assert [error for each in found for error, reason in each if not reason] == []
+        assert {error for each in found for error, _ in each} - listed - set(vars(builtins)) == set()

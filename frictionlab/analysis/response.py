@@ -151,27 +151,50 @@ def impedance(
     *,
     across: bool = False,
 ) -> Any:
-    """Complex change of the friction coefficient per change of slip velocity, about steady sliding on the belt.
+    """Compute the impedance of a contact: change of friction per change of slip velocity.
 
-    Z [1/velocity], one for each frequency, in the units of the law, for changes as exp(i frequency time): a real part
-    above 0 damps, an imaginary part above 0 is inertia, below 0 stiffness.
+    The change is small, varies as exp(i frequency time), and is about steady sliding on the belt. A positive
+    real part damps. A positive imaginary part is inertia, a negative one is stiffness.
 
-    belt_speed [velocity]: of steady sliding; 0: about rest, at an undeflected bristle.
-    frequencies [rad/time]: circular; an array of belt speeds is broadcast against them.
-    plot: whether to return the figure, Bode and Nyquist, instead of the numbers.
-    across: whether slip and friction change across the belt, in the plane.
+    Z = f_v + f_z (i frequency - r_z)^-1 r_v, with derivatives of friction f and of the rate r of the memory
+    z. Each is found by differences extrapolated to zero. Z is 0 in sliding if friction depends on the path
+    alone (Dahl, Jenkins).
 
-    Z = f_v + f_z (i frequency - r_z)^-1 r_v, with derivatives of friction f and of the rate r of what is remembered,
-    each by differences extrapolated to zero; 0 in sliding where friction depends on the path alone (Dahl, Jenkins).
+    Parameters
+    ----------
+    law : FrictionLaw
+        Law of friction.
+    belt_speed : array_like of float
+        Belt speed of steady sliding [velocity]; 0 is about rest, at an undeflected bristle.
+    frequencies : array_like of float, shape (n,)
+        Angular frequencies [rad/time]; an array of belt speeds is broadcast against them.
+    plot : bool, default False
+        Whether to return the figure, Bode and Nyquist plots, instead of the numbers.
+    across : bool, default False
+        Whether slip and friction change across the belt, in the plane.
+
+    Returns
+    -------
+    numpy.ndarray of complex, shape (n,), or matplotlib.figure.Figure
+        Impedance Z [1/velocity] at each frequency, in the units of the law.
+
+    Raises
+    ------
+    ValueError
+        If there is no steady sliding, if the law has a corner there, or if a value makes no sense.
+    TypeError
+        If a value is of another kind.
+
+    References
+    ----------
     LuGre in closed form: Canudas de Wit et al. (1995), IEEE TAC 40, 419, linearized.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> law = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2, stiffness=40, damping=1)
     >>> fl.impedance(law, 2, [0, 1, 100]).round(4)
     array([-0.0368+0.j    , -0.0368-0.0008j, -0.0641-0.065j ])
-
-    Raises ValueError where there is no steady sliding or the law has a corner there, ValueError or TypeError for what
-    makes no sense.
     """
     law = given_law(law)
     speeds, circular = np.broadcast_arrays(
@@ -209,30 +232,56 @@ def describing_function(
     normal_load: ArrayLike = 1.0,
     harmonics: int = 1,
 ) -> Any:
-    """Complex harmonics of the friction coefficient over the amplitude of the slip velocity.
+    """Compute the harmonics of the friction coefficient over the amplitude of the slip velocity.
 
-    The slip velocity is -belt_speed + amplitude sin(frequency time); Im(amplitude D_k exp(i k frequency time)) is the
-    k-th harmonic of friction. A real part of D_1 above 0 damps, an imaginary one below 0 is stiffness.
+    The slip velocity is -belt_speed + amplitude sin(frequency time); Im(amplitude D_k exp(i k frequency
+    time)) is the k-th harmonic of friction. A positive real part of D_1 damps, a negative imaginary part is
+    stiffness. The closed loop of the law under that slip is integrated. If the mean depends on the start, the
+    loop starts from an undeflected contact.
 
-    amplitude [velocity], > 0: of the slip velocity along the belt; a tuple of two is slip in the plane.
-    frequency [rad/time], > 0: circular.
-    belt_speed [velocity]: that about which slip oscillates; 0: about rest.
-    normal_load [force], > 0: of which laws of a contact_stiffness or contact_damping are taken per unit.
-    harmonics: the number of D_k; where larger than 1 the first axis is the harmonic.
+    Arrays are broadcast.
 
-    Arrays are broadcast. In the plane, amplitudes along x1 and x2 (complex ones lead by their angle), D_k has 2 x 2
-    numbers: row i of friction along i, column j over the slip velocity along j, NaN where that is 0.
+    Parameters
+    ----------
+    law : FrictionLaw
+        Law of friction.
+    amplitude : array_like of float, > 0, or tuple of two complex
+        Amplitude of the slip velocity along the belt [velocity]. A tuple has the amplitudes along x1 and x2
+        of slip in the plane; complex ones lead by their angle.
+    frequency : array_like of float, > 0
+        Angular frequency [rad/time].
+    belt_speed : array_like of float, default 0
+        Belt speed about which slip oscillates [velocity]; 0 is about rest.
+    normal_load : array_like of float, > 0, default 1
+        Normal load [force] by which ``contact_stiffness`` and ``contact_damping`` of a law are divided.
+    harmonics : int, >= 1, default 1
+        Number of D_k.
 
-    The closed loop of the law under that slip, its harmonics integrated; where the start decides on the mean, from an
-    undeflected contact. Coulomb at rest gives 4 mu/(pi amplitude): Sulollari, van Dalen & Cabboi, Eq. 9.
+    Returns
+    -------
+    numpy.ndarray of complex, or complex
+        D_k [1/velocity]. The first axis is the harmonic if ``harmonics`` is above 1. In the plane the last
+        two axes have 2 x 2 numbers: row i is friction along i, column j is over the slip velocity along j,
+        NaN if that is 0.
 
+    Raises
+    ------
+    ValueError
+        If no closed loop is found, or a value makes no sense.
+    TypeError
+        If a value is of another kind.
+
+    References
+    ----------
+    Coulomb at rest gives 4 mu/(pi amplitude): Sulollari, van Dalen & Cabboi, Eq. 9.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> fl.describing_function(fl.Coulomb(mu=0.4), [1, 2], 1).real.round(4)
     array([0.5093, 0.2546])
     >>> complex(fl.describing_function(fl.Dahl(mu=0.4, stiffness=40), 0.01, 1).round(4))
     (12.1419-29.3003j)
-
-    Raises ValueError where no closed loop is found, ValueError or TypeError for what makes no sense.
     """
     law, count = _without_units(given_law(law)), at_least_one("harmonics", harmonics)
     names = {"frequency": frequency, "belt_speed": belt_speed, "normal_load": normal_load}

@@ -140,22 +140,47 @@ def sensitivities(
     method: str | Method = "auto",
     tolerance: float = 1e-8,
 ) -> pd.DataFrame:
-    """The derivative of the mean friction by numbers of a scene and a law, one row each.
+    """Compute derivatives of the mean friction by numbers of a scene and a law.
 
-    parameters: dotted paths such as ``"scene.damping_ratio"`` and ``"law.mu"``; all numbers where left out.
-    Columns: parameter, value, derivative d(mean)/d(parameter) [per unit of the parameter, a phase per degree], error
-    (a bound on that of the derivative), elasticity (relative change of the mean over that of the parameter; empty for
-    phases and where either is zero), reason (why there is no derivative, else ''). ``.attrs["maps"]`` counts periods
-    that were followed. The steady state is found by ``method``; the derivative is that of the period map.
+    The steady state is found by ``method``; the derivatives are those of the period map.
 
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    parameters : list of str, optional
+        Paths of the numbers, such as ``"scene.damping_ratio"`` and ``"law.mu"``; all numbers if left out.
+    method : str or Method, default "auto"
+        Name of a method, or a method such as ``fl.March(steps=1000)``.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of ``mean_friction``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each number, with the columns ``parameter``, ``value``, ``derivative`` d(mean)/d(parameter)
+        [per unit of the parameter, a phase per degree], ``error`` (bound on the error of the derivative),
+        ``elasticity`` (relative change of the mean over that of the parameter; empty for phases and where
+        either is zero), ``reason`` (why there is no derivative, else ""). ``.attrs["maps"]`` counts the
+        periods that were integrated.
+
+    Raises
+    ------
+    ValueError
+        If a path is no number of the scene or the law, or a value makes no sense.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
     >>> table = fl.sensitivities(scene, fl.Coulomb(mu=0.4), ["law.mu", "scene.belt_speed"])
     >>> table.derivative.round(6).tolist()
     [0.246794, 0.009882]
-
-    Raises ValueError for a path that is no number of them, ValueError or TypeError for what makes no sense.
     """
     pair = Pair(given_scene(scene), given_law(law))
     numbers = pair.numbers()

@@ -29,11 +29,13 @@ def _methods_for(scene: Scene) -> tuple[Method, ...]:
 
 
 class Auto(Method):
-    """Tries exact, then shooting, of a body that remembers relay_locus first, and says why.
+    """Cheapest method that applies: exact, else shooting; relay_locus first for a body with memory.
 
-    One method solves a whole curve, since a change inside a curve would look like physics. An answer whose error is
-    above the tolerance counts as failed.
+    One method solves a whole curve, since a change of method inside a curve would look like physics. The
+    column ``model`` tells why it was chosen. An answer whose error is above the tolerance counts as failed.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="auto")

@@ -40,11 +40,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Comparison:
-    """A study that was solved in memory; seconds: how long that took.
+    """Study that was solved in memory, with its table, curves and figures.
 
-    Shown as its summary, in a notebook as a small table with the curves drawn in it. ``fl.compare`` and ``fl.sweep``
-    make it.
+    ``fl.compare`` and ``fl.sweep`` return it. It is shown as its summary, in a notebook as a small table with
+    the curves drawn in it.
 
+    Attributes
+    ----------
+    run : Run
+        Results of the study.
+    seconds : float
+        Time that the solution took [s].
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> done = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45])
@@ -57,8 +66,10 @@ class Comparison:
 
     @property
     def study(self) -> Study:
-        """The study, which ``.to_yaml()`` writes as a file.
+        """Study that was solved; ``.to_yaml()`` writes it as a study file.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -70,8 +81,10 @@ class Comparison:
 
     @property
     def table(self) -> pd.DataFrame:
-        """One row per scene, law and method, with every result column.
+        """Table with a row for each scene, law and method, and every result column.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -83,8 +96,10 @@ class Comparison:
 
     @property
     def curves(self) -> pd.DataFrame:
-        """One row per curve with its shape, as in ``curves.csv``; empty where belt speed is not swept.
+        """Table of curves with their shapes, as in ``curves.csv``; empty if belt speed is not swept.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -96,8 +111,12 @@ class Comparison:
 
     @property
     def onsets(self) -> pd.DataFrame:
-        """One row per belt speed at which a motion changes its kind, found when first asked for.
+        """Table with a row for each belt speed at which the motion changes its kind.
 
+        Onsets are computed when first used.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -108,12 +127,24 @@ class Comparison:
         return self.run.onsets
 
     def to_xarray(self) -> xarray.Dataset:
-        """The table over law, belt speed, every input that is swept, and method where there are several.
+        """Convert the table to an xarray dataset.
 
-        Dimensions have the names of columns; select a method by ``.sel({"method": "exact"})``.
+        Dimensions are law, belt speed, every swept input, and method if there are several. They have the
+        names of columns: select a method by ``.sel({"method": "exact"})``. All other columns are variables,
+        parameters of laws included.
 
-        All else is a variable, what laws have of their own included.
+        Returns
+        -------
+        xarray.Dataset
+            Dataset with the values of the table.
 
+        Raises
+        ------
+        ImportError
+            If xarray is not installed; ``pip install 'frictionlab[xarray]'`` installs it.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -121,8 +152,6 @@ class Comparison:
         >>> arrays = done.to_xarray()
         >>> arrays["mean_friction"].sel({"law": "coulomb", "scene.belt_speed": 25}).round(4).item()
         0.2178
-
-        Raises ImportError without xarray, which ``pip install 'frictionlab[xarray]'`` installs.
         """
         try:
             import xarray  # noqa: F401 - pandas makes the dataset, and tells less well that it is missing
@@ -142,21 +171,39 @@ class Comparison:
     def plot(
         self, figure: str = "mean_friction", onsets: bool = False, ax: Axes | None = None, **options: Any
     ) -> Figure:
-        """One of its figures as matplotlib has it, to show, change and save; nothing is written.
+        """Draw one of the figures, to show, change and save; nothing is written.
 
-        figure: mean_friction, velocity, energies, differences, shape or map, where there is one. onsets: mark them,
-        which takes a while to find. ax: axes of your own to draw it into, where it is one picture. options: the keys
-        of ``figures`` of a study, such as ``normalized=True``, ``width="single"``, ``against="coulomb"``.
+        Parameters
+        ----------
+        figure : str, default "mean_friction"
+            Name of the figure: "mean_friction", "velocity", "energies", "differences", "shape" or "map".
+        onsets : bool, default False
+            Whether to mark onsets, which take a while to compute.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw into, for a figure that is one picture; a figure is made if left out.
+        **options : Any
+            Keys of ``figures`` of a study, such as ``normalized=True``, ``width="single"``,
+            ``against="coulomb"``.
 
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Figure.
+
+        Raises
+        ------
+        ValueError
+            If there is no such figure, if the figure is several pictures and ``ax`` is given, or if an option
+            has no meaning.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
         >>> figure = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45, 60]).plot(width="single")
         >>> round(25.4 * figure.get_figwidth())
         85
-
-        Raises ValueError for a figure that there is none of, for one of several pictures where ``ax`` is given, and
-        for options that mean nothing.
         """
         from frictionlab.charts.figures import FigureData, figure_of  # with matplotlib, which takes a second
 
@@ -167,16 +214,33 @@ class Comparison:
         return figure_of(FigureData.of(study, whole(self.table), study.title, **told), figure, ax)
 
     def save(self, folder: str | PathLike[str]) -> Path:
-        """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.
+        """Write what ``frictionlab run`` writes into a folder, with figures and report.
 
+        Parameters
+        ----------
+        folder : str or path-like
+            Folder for results.
+
+        Returns
+        -------
+        Path
+            Path of the folder.
+
+        Raises
+        ------
+        FolderError
+            If the folder holds results of another study.
+        SaveError
+            If a file cannot be written.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
         >>> done = fl.compare(scene, fl.Coulomb(mu=0.4))
         >>> {"results.csv", "report.html", "study.yaml"} < {file.name for file in done.save("laws").iterdir()}
         True
-
-        Raises FolderError where the folder holds results of another study, SaveError.
         """
         from frictionlab.charts.figures import (  # with matplotlib, which takes a second
             FigureData,
@@ -192,16 +256,31 @@ class Comparison:
         return saved.folder
 
     def report(self, path: str | PathLike[str]) -> Path:
-        """Write the report alone, one HTML file that needs nothing else; where it is.
+        """Write the report alone, one HTML file that needs no others.
 
+        Parameters
+        ----------
+        path : str or path-like
+            Path of the file.
+
+        Returns
+        -------
+        Path
+            Path of the file.
+
+        Raises
+        ------
+        SaveError
+            If the file cannot be written.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
         >>> done = fl.compare(scene, fl.Coulomb(mu=0.4))
         >>> print(done.report("laws.html"))
         laws.html
-
-        Raises SaveError.
         """
         from frictionlab.runner.files import write_whole
 
@@ -229,23 +308,53 @@ def compare(
     executor: Executor | None = None,
     progress: ProgressAsked = None,
 ) -> Comparison:
-    """Several laws, by one or several methods, along belt speeds of one scene.
+    """Compare laws, by one or several methods, along belt speeds of one scene.
 
-    laws: a law, a list of laws, of which two of one kind need a ``label=``, or a mapping label -> law.
-    belt_speed: a list, or a range as in a study, ``{"start": 1, "stop": 60, "num": 120}``, or with ``"within": 1e-3``
-    in place of num, which chooses points where curves bend; that of the scene where it is left out.
-    columns: result columns, all by default.
-    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
-    shows it.
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    laws : FrictionLaw, list of FrictionLaw, or dict of str to FrictionLaw
+        One law, a list of laws, or a mapping label -> law. Two laws of one kind in a list need a ``label=``.
+    belt_speed : array_like of float, or dict, optional
+        Belt speeds [omega_1 L; m/s for a scene in SI units]: a list, or a range as in a study, ``{"start": 1,
+        "stop": 60, "num": 120}``. With ``"within": 1e-3`` instead of ``num`` points are chosen where curves
+        bend. The belt speed of the scene if left out.
+    methods : str, Method, or a list or dict of them, default "auto"
+        Name of a method, a method such as ``fl.March(steps=1000)``, a list of them, or a mapping
+        label -> method.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of ``mean_friction``.
+    columns : list of str, optional
+        Result columns and groups of them; "all" for every one. All default columns if left out.
+    executor : concurrent.futures.Executor, optional
+        Executor that solves the chunks; threads of this process if left out.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
 
+    Returns
+    -------
+    Comparison
+        Table, curves and figures.
+
+    Raises
+    ------
+    StudyError
+        If the study has mistakes; the message has every one.
+    TypeError
+        If something is no scene, law or method.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
     >>> found = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
     >>> found.table.pivot(index="scene.belt_speed", columns="law", values="mean_friction").round(3).loc[25].tolist()
     [0.218, 0.218]
-
-    Raises StudyError with every mistake, TypeError for what is no scene, law or method.
     """
     ready = given_scene(scene)
     listed = belt_speed if belt_speed is None or isinstance(belt_speed, Mapping) else given_speeds(belt_speed)
@@ -263,19 +372,51 @@ def sweep(
     executor: Executor | None = None,
     progress: ProgressAsked = None,
 ) -> Comparison:
-    """The full grid of a sweep: ``over`` has lists or ranges by ``scene.<path>`` or ``laws.<label>.<parameter>``.
+    """Solve the full grid of a sweep.
 
-    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
-    shows it.
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    laws : FrictionLaw, list of FrictionLaw, or dict of str to FrictionLaw
+        One law, a list of laws, or a mapping label -> law. Two laws of one kind in a list need a ``label=``.
+    over : dict of str to list or dict
+        Lists or ranges of values by path: ``scene.<path>`` or ``laws.<label>.<parameter>``.
+    methods : str, Method, or a list or dict of them, default "auto"
+        Name of a method, a method such as ``fl.March(steps=1000)``, a list of them, or a mapping
+        label -> method.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of ``mean_friction``.
+    columns : list of str, optional
+        Result columns and groups of them; "all" for every one. All default columns if left out.
+    executor : concurrent.futures.Executor, optional
+        Executor that solves the chunks; threads of this process if left out.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
 
+    Returns
+    -------
+    Comparison
+        Table, curves and figures.
+
+    Raises
+    ------
+    StudyError
+        If the study has mistakes; the message has every one.
+    TypeError
+        If something is no scene, law or method.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
     >>> found = fl.sweep(scene, fl.Coulomb(mu=0.4), {"scene.drive.frequency": [1, 1.5], "scene.belt_speed": [5, 20]})
     >>> len(found.table)
     4
-
-    Raises as ``compare`` does.
     """
     told = {
         "tolerance": tolerance,

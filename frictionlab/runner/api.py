@@ -74,28 +74,68 @@ def run(
     cache_gigabytes: float = USUAL_GIGABYTES,
     as_csv: bool = False,
 ) -> Run:
-    """Solve every case of a study. Writes only with ``out``, the folder for results.
+    """Solve every case of a study.
 
-    overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
-    existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
-    executor: any; threads of this process by default.
-    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
-    shows it.
-    cache: the folder that keeps solved chunks for this and other studies, ``.cache`` beside ``out`` by default; above
-    so many gigabytes those used longest ago are removed. Without ``out`` and ``cache`` nothing is written.
-    as_csv: write a table of more than 1e5 rows as text, too; it is read from its file where ``.table`` is asked for.
-    columns: result columns and groups of them (``frictionlab columns`` tells them), in place of those of the study;
-    ``"all"`` for every one.
+    Nothing is written without ``out`` and ``cache``.
 
+    Parameters
+    ----------
+    study : str, path-like, dict or Study
+        Study: the path of a file, the content of one as a mapping, or a ``Study``.
+    out : str or path-like, optional
+        Folder for results; they are kept in memory only if left out.
+    overrides : list of str, default ()
+        Changes ``path=value`` as for ``--set``. A ``Study`` has them already: with one they are recorded
+        only.
+    existing : {"reuse", "replace"}, default "reuse"
+        Treatment of results in ``out``: "reuse" takes over finished points of the same study, "replace"
+        replaces any results.
+    executor : concurrent.futures.Executor, optional
+        Executor that solves the chunks; threads of this process if left out.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
+    columns : list of str or str, optional
+        Result columns and groups of them, instead of those of the study; "all" for every one.
+        ``frictionlab columns`` lists them.
+    cache : str or path-like, optional
+        Folder that keeps solved chunks for this and other studies; ``.cache`` beside ``out`` if left out.
+    cache_gigabytes : float, default 4
+        Largest size of the cache [GB]; beyond it the chunks that were used longest ago are removed.
+    as_csv : bool, default False
+        Whether to write a table of more than 1e5 rows as text, too. Such a table is read from its file when
+        ``.table`` is first used.
+
+    Returns
+    -------
+    Run
+        Tables, kept orbits, and the verdicts on what the study expects.
+
+    Raises
+    ------
+    StudyError
+        If the study has mistakes; the message has every one.
+    FolderError
+        If ``out`` holds another study, or another run writes there.
+    UnsavedError
+        If a file cannot be written; ``.run`` of the error has the results.
+    Interrupted
+        If the run is interrupted by Ctrl-C; finished points are kept in ``out``.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+    ValueError
+        If a value makes no sense, such as an unknown column.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
     >>> study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["auto", "mdsm"]}
     >>> done = fl.run(study, overrides=["scene.belt_speed=25"])
     >>> done.table[["method", "mean_friction"]].round(4).values.tolist()
     [['auto', 0.2178], ['mdsm', 0.1333]]
-
-    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError or TypeError for what makes no
-    sense, such as an unknown column.
     """
     check_ways(existing, executor)
     ready = given_study(study, overrides, columns)
@@ -159,22 +199,49 @@ def curve(
     executor: Executor | None = None,
     progress: ProgressAsked = None,
 ) -> pd.DataFrame:
-    """The result table of one law over belt speeds: a row each, in the order given.
+    """Compute the result table of one law over belt speeds.
 
-    belt_speed [omega_1 L; m/s for a scene given in SI units]: a number, or a list or array of one dimension.
-    method: a name, or a method such as ``fl.March(steps=1000)``. tolerance [-]: absolute, on mean_friction.
-    columns: result columns and groups of them, as for ``run``.
-    executor: any; threads of this process by default.
-    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
-    shows it.
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    belt_speed : array_like of float, shape (n,)
+        Belt speeds [omega_1 L; m/s for a scene in SI units]; a number is one belt speed.
+    method : str or Method, default "auto"
+        Name of a method, or a method such as ``fl.March(steps=1000)``.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of ``mean_friction``.
+    columns : list of str or str, optional
+        Result columns and groups of them, as for ``run``; "all" for every one.
+    executor : concurrent.futures.Executor, optional
+        Executor that solves the chunks; threads of this process if left out.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
 
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each belt speed, in the order given.
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense.
+    TypeError
+        If a value is of another kind.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> table = fl.curve(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45])
     >>> table["mean_friction"].round(4).tolist()
     [0.0506, 0.2178, 0.3613]
-
-    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     check_executor(executor)
@@ -209,21 +276,52 @@ def attractors(
     tolerance: float = 1e-8,
     progress: ProgressAsked = None,
 ) -> pd.DataFrame:
-    """Every state that motions of a driven scene end in, of whatever period: a row per Poincare point.
+    """Find every steady state that motions of a driven scene end in, whatever its period.
 
-    So many starts are followed at each belt speed [scene velocity], as shooting does, and every state found is
-    carried on to the next belt speed from both sides. Rows rise in belt speed; columns as in ``attractors.csv`` of a
-    study: period in those of the drive, mean_friction [-], position x [L] and velocity [omega_1 L] of the point.
-    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
-    shows it.
+    Motions from ``starts`` initial states are followed at each belt speed, as ``shooting`` does. Every state
+    found is continued to the next belt speed from both sides.
 
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    belt_speed : array_like of float, shape (n,)
+        Belt speeds [omega_1 L; m/s for a scene in SI units].
+    starts : int, >= 1, default 8
+        Number of initial states at each belt speed.
+    method : str or Method, default "auto"
+        Name of a method, or a method such as ``fl.March(steps=1000)``.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of ``mean_friction``.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each point of the Poincare map of each state, belt speeds ascending. Columns are those of
+        ``attractors.csv`` of a study: ``period`` in drive periods, ``mean_friction`` [-], position ``x`` [L]
+        and ``velocity`` [omega_1 L] of the point, ...
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense.
+    TypeError
+        If a value is of another kind.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> found = fl.attractors(scene, fl.Coulomb(mu=0.4), belt_speed=[1, 5], starts=4)
     >>> found[["belt_speed", "period", "x"]].round(2).values.tolist()
     [[1.0, 1.0, -24.51], [5.0, 1.0, -24.93]]
-
-    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     starts = at_least_one("starts", starts)

@@ -17,13 +17,42 @@ from frictionlab.study.study import Study
 
 @dataclass(frozen=True, repr=False)
 class Run:
-    """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
+    """Results of a study: its tables, its kept orbits, and the verdicts on what it expects.
 
-    curves: one row per curve, with its shape; none where belt speed is not swept or the run was stopped.
-    attractors: a row per Poincare point of every state that motions end in, where the study keeps them; else a row
-    per state of the points that have several, None where no point has.
-    harmonics: a row per harmonic of every orbit, None where the study does not keep them.
+    ``fl.run`` returns it.
 
+    Attributes
+    ----------
+    study : Study
+        Study that was solved.
+    made : callable
+        Function that returns the table, or reads it from its file; ``table`` calls it once.
+    orbits_made : callable
+        The same for ``orbits``.
+    verdicts : tuple of Verdict
+        Verdict on each expectation of the study.
+    folder : Path, optional
+        Folder that the run was written to; None if it was not written.
+    computed : int
+        Number of points computed by this run, not taken over.
+    curves : pandas.DataFrame
+        A row for each curve, with its shape; empty if belt speed is not swept or the run was stopped.
+    onsets_made : callable
+        Function that returns ``onsets``.
+    boundaries_made : callable
+        Function that returns ``boundaries``.
+    shown : pandas.DataFrame, optional
+        Rows that figures and pages show, of a table too long to be held in memory.
+    found : dict of str to int, optional
+        Number of rows of each status, of such a table.
+    attractors : pandas.DataFrame, optional
+        A row for each Poincare point of every state that motions end in, if the study keeps them. Else a row
+        for each state of the points that have several; None if no point has.
+    harmonics : pandas.DataFrame, optional
+        A row for each harmonic of every orbit; None if the study does not keep them.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
     >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
@@ -53,8 +82,10 @@ class Run:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """One row per scene, law and method, with the inputs and every result column.
+        """Table with a row for each scene, law and method, with the inputs and every result column.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
         >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
@@ -65,8 +96,10 @@ class Run:
 
     @cached_property
     def orbits(self) -> pd.DataFrame | None:
-        """The kept orbits, a row per instant; None where the study keeps none.
+        """Kept orbits, a row for each instant; None if the study keeps none.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
         >>> study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "keep": {"orbit": 4}}
@@ -77,8 +110,12 @@ class Run:
 
     @cached_property
     def onsets(self) -> pd.DataFrame:
-        """One row per onset of a curve, found when first asked for: belt speeds where stick begins, ends, ...
+        """Table with a row for each onset of a curve, such as the belt speed where stick begins.
 
+        Onsets are computed when first used.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -90,11 +127,13 @@ class Run:
 
     @cached_property
     def boundaries(self) -> pd.DataFrame:
-        """The lines that the study's ``boundaries`` ask for, a row per place of each, found when first asked for.
+        """Table with a row for each place on the lines that ``boundaries`` of the study asks for.
 
-        Each of the two swept numbers has an error: how far the line may be from the place. Curves are solved between
-        those of the grid.
+        Lines are computed when first used. Each of the two swept numbers has an error: how far the line may be
+        from the place. Curves between those of the grid are solved for them.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(amplitude=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -109,8 +148,10 @@ class Run:
 
     @property
     def to_show(self) -> pd.DataFrame:
-        """The table, or of a long one the rows that figures and pages show.
+        """Rows that figures and pages show, all of the table or some of a long one.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
         >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
@@ -121,8 +162,10 @@ class Run:
 
     @property
     def table_file(self) -> Path | None:
-        """Where the table is; None if it was not written.
+        """Path of the table; None if it was not written.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
         >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
@@ -133,8 +176,10 @@ class Run:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many rows have each status.
+        """Number of rows of each status.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
         >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
@@ -145,8 +190,10 @@ class Run:
 
     @property
     def size(self) -> int:
-        """How many rows there are.
+        """Number of rows.
 
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
         >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})

@@ -65,12 +65,93 @@ def _kept(orbit: Orbit | None, _place: int) -> Orbit | None:
 
 @dataclass(frozen=True, repr=False)
 class SteadyState:
-    """A steady state: the result columns of the table, in its units; NaN or "" where one does not apply.
+    """Steady state of one scene: all result columns of the table, in its units.
 
-    mean_friction, error [-]: the mean friction coefficient along the belt and the bound on its error; lengths in L,
-    velocities in omega_1 L, energies of one period in K_1 L^2, period in those of the drive. All columns are
-    in docs/results.md. si: the columns in SI units by name, where the scene is given in them.
+    A number that does not apply is NaN, a text that does not apply is "". Lengths are in L, velocities in
+    omega_1 L, and energies in K_1 L^2 per period. ``fl.steady_state`` returns it.
 
+    Attributes
+    ----------
+    status : {"ok", "refused", "failed", "not_unique", "killed"}
+        "ok": a number with an error. "refused": the method cannot do the scene. "failed": no steady state was
+        found. "not_unique": the mean depends on the initial state. "killed": the computation was interrupted.
+    reason : str
+        Reason of the status, if it is not plainly ok.
+    mean_friction : float
+        Time mean of the friction coefficient along the belt [-].
+    error : float
+        Bound on the absolute error of ``mean_friction`` [-].
+    error_kind : str
+        "guaranteed" (proved), "estimated", or "statistical" if the motion does not repeat.
+    unique : str
+        "proved", "tested" or "no": whether every initial state ends in this state.
+    mean_low : float
+        Lowest mean, if it is not unique [-].
+    mean_high : float
+        Highest mean, if it is not unique [-].
+    window : float
+        Number of drive periods over which this range, or a statistical mean, is averaged.
+    mean_friction_transverse : float
+        Time mean of the friction coefficient across the belt [-].
+    velocity_amplitude : float
+        Half the peak-to-peak velocity along the belt [omega_1 L].
+    velocity_harmonic : float
+        Amplitude of the first harmonic of the velocity along the belt [omega_1 L].
+    velocity_phase : float
+        Phase of this harmonic against the load along the belt [degrees], positive if it leads.
+    transverse_velocity_amplitude : float
+        Half the peak-to-peak velocity across the belt [omega_1 L].
+    transverse_velocity_harmonic : float
+        Amplitude of the first harmonic of the velocity across the belt [omega_1 L].
+    transverse_velocity_phase : float
+        Phase of this harmonic against the load along the belt [degrees], positive if it leads.
+    stick_fraction : float
+        Fraction of the period in stick.
+    reversals : float
+        Sign changes of the slip velocity along the belt per period.
+    force_reversals : float
+        Sign changes of the friction force along the belt per period.
+    energy_input : float
+        Work of the loads per period [K_1 L^2].
+    energy_viscous : float
+        Loss in the dashpots per period [K_1 L^2].
+    energy_friction : float
+        Energy that friction takes from the mass per period [K_1 L^2].
+    energy_contact : float
+        Heat in the contact per period [K_1 L^2].
+    energy_input_error : float
+        Estimated bound on the error of ``energy_input`` [K_1 L^2]; NaN for reduced models.
+    energy_viscous_error : float
+        The same for ``energy_viscous``.
+    energy_friction_error : float
+        The same for ``energy_friction``.
+    energy_contact_error : float
+        The same for ``energy_contact``.
+    period : float
+        Period of the response in drive periods; without a drive in units of 2 pi.
+    floquet : float
+        Largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit.
+    floquet_error : float
+        Estimated bound on the error of ``floquet``.
+    normalized_friction : float
+        ``mean_friction`` over the friction coefficient of steady sliding.
+    velocity_ratio : float
+        Belt speed over V_lin, the largest velocity of the body without friction.
+    friction_to_drive : float
+        Friction coefficient times normal load over the amplitude of the driving force.
+    presliding_ratio : float
+        Presliding length over the amplitude of the motion without friction.
+    model : str
+        Model that produced the number, in words such as "events"; with ``auto`` also why it was chosen.
+    seconds : float
+        Time spent in kernels [s].
+    si : dict of str to float
+        Columns in SI units by name, if the scene is given in SI units.
+    motion : OrbitOf, optional
+        Orbit, computed when first used; ``orbit`` and ``harmonics`` read it.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
@@ -130,8 +211,20 @@ class SteadyState:
         return f"{self.status}, {none}: {self.reason}"
 
     def raise_for_status(self) -> SteadyState:
-        """This steady state if its status is ``ok``. Raises NoMeanError with status and reason for every other.
+        """Return this steady state if its status is ``ok``.
 
+        Returns
+        -------
+        SteadyState
+            This steady state.
+
+        Raises
+        ------
+        NoMeanError
+            If the status is another; the message has status and reason.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -143,19 +236,34 @@ class SteadyState:
         return self
 
     def orbit(self, n: int) -> pd.DataFrame:
-        """One period at n equally spaced times, a row each: tau, x1, v1, x2, v2, friction, load, slip, ...
+        """Sample one period of the orbit at equally spaced times.
 
-        Columns as in ``orbits.parquet``, in the scales of the scene, x2 and its like zero along a line; behind them
-        those in SI units, ``tau_s``, ``x1_m``, ``v1_m_per_s``, ..., where the scene is given in them.
+        Parameters
+        ----------
+        n : int, >= 1
+            Number of samples.
 
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each instant, with the columns of ``orbits.parquet`` in the scales of the scene:
+            ``tau``, ``x1``, ``v1``, ``x2``, ``v2``, ``friction``, ``load``, ``slip``, ...; ``x2`` and other
+            columns across the belt are zero along a line. For a scene in SI units, ``tau_s``, ``x1_m``,
+            ``v1_m_per_s``, ... follow.
+
+        Raises
+        ------
+        ValueError
+            If there is no orbit; the message says why.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
         >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
         >>> state.orbit(4)[["tau", "slip"]].round(2).values.tolist()
         [[0.0, -4.95], [1.57, 20.02], [3.14, -4.62], [4.71, -30.21]]
-
-        Raises ValueError where there is no orbit, saying why.
         """
         count = at_least_one("n", n)
         columns = None if self.motion is None else self.motion.sampled(count)
@@ -166,16 +274,34 @@ class SteadyState:
         return pd.DataFrame(columns)
 
     def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:
-        """Harmonics 0 ... highest of velocity [omega_1 L] and friction [-] along the belt, or across it.
+        """Compute the harmonics of velocity and friction along or across the belt.
 
+        Parameters
+        ----------
+        highest : int, >= 1
+            Highest order; the harmonics 0 to ``highest`` are computed.
+        across : bool, default False
+            Whether to compute them across the belt instead of along it.
+
+        Returns
+        -------
+        HarmonicParts
+            Arrays by order: amplitudes and phases of velocity [omega_1 L] and friction [-], and the parts of
+            friction in phase and in quadrature with the velocity.
+
+        Raises
+        ------
+        ValueError
+            If there is no orbit; the message says why.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
         >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
         >>> state.harmonics(3).velocity_amplitude[1:].round(3).tolist()
         [25.057, 0.651, 0.525]
-
-        Raises ValueError where there is no orbit, saying why.
         """
         count = at_least_one("highest", highest)
         found = None if self.motion is None else self.motion.harmonics(count, across)

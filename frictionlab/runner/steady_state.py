@@ -25,17 +25,42 @@ from frictionlab.values.columns import ALL, RESULTS, selected
 def steady_state(
     scene: Scene, law: FrictionLaw, method: str | Method = "auto", tolerance: float = 1e-8
 ) -> SteadyState:
-    """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
+    """Compute the steady state of one scene.
 
-    method: a name, or a method such as ``fl.March(steps=1000)``. tolerance [-]: absolute, on mean_friction.
+    Refused and failed states are returned, too: ``status`` and ``reason`` tell them.
 
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    method : str or Method, default "auto"
+        Name of a method, or a method such as ``fl.March(steps=1000)``.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of ``mean_friction``.
+
+    Returns
+    -------
+    SteadyState
+        Mean friction and all other result columns.
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense.
+    TypeError
+        If a value is of another kind.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
     >>> round(state.mean_friction, 4), state.error < 1e-8, state.status
     (0.0506, True, 'ok')
-
-    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     task = Task(given_tolerance(tolerance), columns=selected([ALL]))

@@ -30,21 +30,50 @@ def trajectory(
     method: str | Method = "auto",
     tolerance: float = 1e-8,
 ) -> pd.DataFrame:
-    """The motion of a driven mass from a start, for so many periods of all that changes in time.
+    """Compute the motion of a driven mass from an initial state.
 
-    initial: position and velocity at tau = 0; where left out scene.initial, without that the friction-free motion.
-    samples: rows a period, evenly spaced, and one at the end. Columns as ``state.orbit(n)``: tau, x1, v1, x2, v2,
-    friction, load, slip, ..., of a scene in SI units tau_s, x1_m, v1_m_per_s, ... too.
-    tolerance: on the mean of a period; instants of stick and reversal are located.
+    A period is the common period of all that changes in time. Instants of stick and reversal are located.
 
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    periods : int, >= 1, default 10
+        Number of periods.
+    samples : int, >= 1, default 200
+        Rows per period, evenly spaced; one more row is the end.
+    initial : Initial, optional
+        Position and velocity at tau = 0. ``scene.initial`` if left out; the friction-free motion if the scene
+        has none either.
+    method : str or Method, default "auto"
+        Name of a method, or a method such as ``fl.March(steps=1000)``.
+    tolerance : float, > 0, default 1e-8
+        Absolute bound [-] on the error of the mean friction of a period.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each instant, with the columns of ``state.orbit(n)``: ``tau``, ``x1``, ``v1``, ``x2``,
+        ``v2``, ``friction``, ``load``, ``slip``, ...; for a scene in SI units ``tau_s``, ``x1_m``,
+        ``v1_m_per_s``, ..., too.
+
+    Raises
+    ------
+    ValueError
+        If the method does not follow such a motion, or a value makes no sense.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
     >>> motion = fl.trajectory(scene, fl.Coulomb(mu=0.4), periods=3, samples=50, initial=fl.Initial(x=3))
     >>> len(motion), float(motion.x1[0])
     (151, 3.0)
-
-    Raises ValueError where no method follows such a motion, ValueError or TypeError for what makes no sense.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     periods, samples = at_least_one("periods", periods), at_least_one("samples", samples)

@@ -102,8 +102,17 @@ class StudyGrid:
     path: Path | None = field(default=None, compare=False)
 
     def cases(self) -> list[StudyCase]:
-        """The full grid, a case a row: every law at every value of its sweeps, by every method, in every scene.
+        """List the cases of the full grid.
 
+        Every law is taken at every value of its sweeps, by every method, in every scene.
+
+        Returns
+        -------
+        list of StudyCase
+            A case for each row of the table, in its order.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
         >>> study = fl.Study.of(scene, fl.Coulomb(mu=0.4), ["auto", "march"], {"scene.belt_speed": [1, 2]})

@@ -122,18 +122,62 @@ SECONDS_PER_POINT = 300.0
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Study(StudyGrid):
-    """Scenes, laws and methods, their full grid, and what is asked of the table.
+    """Study: scenes, laws and methods, their full grid, and what is asked of the table.
 
-    tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
-    keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
-    harmonic of velocity and friction to keep, None for none.
-    data: measured files, and free: ranges by name of what ``frictionlab fit`` may change.
-    columns: result columns and groups asked for, None for the default ones. seconds_per_point: the time a point may
-    take [s]. figures: how they are drawn. boundaries: measures of curves and the levels
-    whose lines over the two swept numbers are found. plugins: its law files. code: SHA-256 of every law that is not
-    frictionlab's own.
-    ``Study.of`` makes one of Python objects, ``fl.run`` solves it.
+    ``Study.of`` makes a study of Python objects, ``fl.run`` solves it.
 
+    Attributes
+    ----------
+    scene : Scene
+        Scene without sweeps.
+    laws : tuple of LawChoice
+        Laws with their labels.
+    methods : tuple of MethodChoice
+        Methods with their labels.
+    sweep : dict of str to tuple
+        Swept values by path: ``scene.<path>``, ``laws.<label>.<parameter>`` or ``friction``. Words and
+        waveforms of a scene can be swept, too.
+    ranges : dict of str to SweepRange or SpeedRange
+        Sweeps that were given as ranges.
+    links : tuple of tuple of str
+        Paths of sweeps that advance together.
+    chosen : tuple of tuple of float
+        Belt speeds of each scene, if a run chooses them.
+    path : Path, optional
+        File of the study.
+    tolerance : float
+        Absolute bound [-] on the error of ``mean_friction``.
+    expect : tuple of Expectation
+        Expectations that a run judges.
+    keep_orbit : int, optional
+        Samples per period of each orbit to keep; None to keep none.
+    keep_attractors : int, optional
+        Number of initial states at each point from which every steady state is looked for; None for none.
+    keep_harmonics : int, optional
+        Highest harmonic of velocity and friction to keep; None to keep none.
+    data : DataFiles, optional
+        Files of measurements.
+    free : dict of str to Any, optional
+        Ranges by name of the numbers that ``frictionlab fit`` may change.
+    columns : tuple of str, optional
+        Result columns and groups of them; None for the default ones.
+    seconds_per_point : float, default 300
+        Longest time that a point may take [s].
+    figures : FigureOptions
+        Options of the figures.
+    boundaries : dict of str to tuple of float
+        Measures of curves, and the levels whose lines over the two swept numbers are computed.
+    title : str
+        Title.
+    source : str
+        Source of the scene, such as a paper and its figure.
+    plugins : tuple of LawFile
+        Files of laws.
+    code : dict of str to str
+        SHA-256 of every law that is not frictionlab's own.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
     >>> fl.Study.of(scene, fl.Coulomb(mu=0.4))
@@ -168,20 +212,43 @@ class Study(StudyGrid):
         sweep: Mapping[str, Any] | None = None,
         **told: Any,
     ) -> Study:
-        """The study of Python objects.
+        """Make a study of Python objects.
 
-        laws: a friction law, several, of which two of one kind need a ``label=``, or a mapping label -> law.
-        methods: likewise, names or methods. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
-        told: the other keys of a study file, such as ``tolerance=1e-6``, ``title=``, ``keep={"orbit": 200}``.
+        Parameters
+        ----------
+        scene : Scene
+            Body and belt, and what shakes them.
+        laws : FrictionLaw, list of FrictionLaw, or dict of str to FrictionLaw
+            One law, a list of laws, or a mapping label -> law. Two laws of one kind in a list need a
+            ``label=``.
+        methods : str, Method, or a list or dict of them, default "auto"
+            Name of a method, a method such as ``fl.March(steps=1000)``, a list of them, or a mapping
+            label -> method.
+        sweep : dict of str to list or dict, optional
+            Lists or ranges of values by path: ``scene.<path>`` or ``laws.<label>.<parameter>``.
+        **told : Any
+            Other keys of a study file, such as ``tolerance=1e-6``, ``title=``, ``keep={"orbit": 200}``.
 
+        Returns
+        -------
+        Study
+            Study, as one from a file.
+
+        Raises
+        ------
+        StudyError
+            If the study has mistakes; the message has every one.
+        TypeError
+            If something is no scene, law or method.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
         >>> study = fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": [5, 25]})
         >>> len(study.cases())
         2
-
-        Raises StudyError with every mistake, TypeError for what is no scene, law or method.
         """
         return cls(**values_of_objects(scene, laws, methods, sweep, **told))
 
@@ -198,8 +265,17 @@ class Study(StudyGrid):
         return f"Study.of({', '.join(parts)})"
 
     def to_yaml(self) -> str:
-        """The study as a study file that loads to an equal study; law files of its own have to lie beside it.
+        """Write the study as the text of a study file, which loads to an equal study.
 
+        Its files of laws must lie beside it.
+
+        Returns
+        -------
+        str
+            Text in YAML.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
         >>> print(fl.Study.of(scene, fl.Coulomb(mu=0.4)).to_yaml().rstrip())

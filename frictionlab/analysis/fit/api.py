@@ -96,16 +96,42 @@ def fit(
 ) -> FittedLaws:
     """Fit numbers of laws, and of their scene, to measurements by least squares.
 
-    data: a table (or a list of tables, or a mapping of columns) with ``belt_speed`` (``belt_speed_m_per_s`` for a
-    scene in SI units) and ``mean_friction``, or with ``time``, ``slip`` [a length] and ``friction`` [coefficient] for
-    the law along a measured path, without a body and a scene. ``sigma``, the standard error of a row, and ``block``
-    may stand beside; ``mean_friction_N`` or ``friction_N`` with ``normal_load_N`` is a coefficient, too; a column
-    ``scene.<path>`` gives the scene of its rows.
-    law: one or several; their numbers stand where they are not free. free: ranges by name, ``{"mu": (0.1, 1)}``, each
-    law takes those it has, or by path, ``"scene.damping_ratio"``; or from, to and spacing (linear or log).
-    blocks: a label for each row, in place of the column: rows of different blocks know nothing of each other.
-    starts: of the search, drawn over the ranges. tell: is told what is being fitted.
+    Parameters
+    ----------
+    data : pandas.DataFrame, dict of str to array_like, or list of them
+        Measurements. Either columns ``belt_speed`` (``belt_speed_m_per_s`` for a scene in SI units) and
+        ``mean_friction``, or columns ``time``, ``slip`` [a length] and ``friction`` [-] for the law along a
+        measured path, without a body and a scene. Further columns are optional: ``sigma``, the standard error
+        of a row, ``block``, and ``scene.<path>``, a number of the scene of the row. ``mean_friction_N`` or
+        ``friction_N`` with ``normal_load_N`` replace a coefficient.
+    law : FrictionLaw or list of FrictionLaw
+        Laws; numbers that are not free keep their value.
+    scene : Scene, optional
+        Scene of the measurements; none for a measured path.
+    free : dict of str to tuple
+        Ranges by name, ``{"mu": (0.1, 1)}``, of which each law takes those it has, or by path,
+        ``"scene.damping_ratio"``. Instead of a tuple, a mapping with from, to and spacing (linear or log).
+    blocks : array_like, shape (n,), optional
+        Label of the block of each row, instead of the column; rows of different blocks are independent.
+    starts : int, >= 1, default 8
+        Number of starts of the search, drawn over the ranges.
+    tell : callable, optional
+        Function that is called with the name of what is being fitted.
 
+    Returns
+    -------
+    FittedLaws
+        Fitted laws, with errors and profiles of their numbers.
+
+    Raises
+    ------
+    ValueError
+        If a value or the data make no sense; the message has the row and what to do.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
@@ -115,8 +141,6 @@ def fit(
     >>> found = fl.fit(data, fl.Coulomb(mu=0.3), scene, free={"mu": (0.1, 1.0)})
     >>> round(found.values["mu"], 2), found.shapes["mu"]
     (0.4, 'bounded')
-
-    Raises ValueError or TypeError for what makes no sense, with the row and what to do.
     """
     laws = [given_law(each) for each in (law if isinstance(law, Sequence) else [law])]
     body = None if scene is None else given_scene(scene)

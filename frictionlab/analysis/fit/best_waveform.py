@@ -104,12 +104,40 @@ _READ = "mean_friction", "error", "period", "energy_input"
 
 @dataclass(frozen=True, eq=False)
 class BestWaveform:
-    """The best drive and the sine.
+    """Best drive, compared with the sine.
 
-    drive: as the scene takes it (a slip where that is prescribed). mean_friction, sine_mean_friction: of both; error:
-    bound on that of their difference. agreeing: of so many starts, those that gain as much. table: a row each for the
-    sine, for waveforms with names that are as strong, and for the best: mean_friction, error, and amplitude, rms and
-    power over those of the sine.
+    ``fl.best_waveform`` returns it.
+
+    Attributes
+    ----------
+    drive : Drive or Slip
+        Best drive, as the scene takes it; a slip if that is prescribed.
+    mean_friction : float
+        Mean friction with the best drive [-].
+    sine_mean_friction : float
+        Mean friction with the sine [-].
+    error : float
+        Bound on the error of their difference [-].
+    agreeing : int
+        Number of starts of the search that change the mean by as much as the best one.
+    starts : int
+        Number of starts.
+    table : pandas.DataFrame
+        A row each for the sine, for the named waveforms that are as strong, and for the best:
+        ``mean_friction``, ``error``, and ``amplitude``, ``rms`` and ``power`` over those of the sine.
+    scenes : dict of str to Scene
+        Scene with the sine and with the best drive, which ``plot`` draws.
+    law : FrictionLaw
+        Law of friction.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+    >>> found = fl.best_waveform(scene, fl.Coulomb(mu=0.4), harmonics=2, equal="rms", starts=1)
+    >>> found.mean_friction < found.sine_mean_friction, len(found.table) > 2
+    (True, True)
+    >>> found.plot().savefig("waveforms.svg")
     """
 
     drive: Any
@@ -123,7 +151,13 @@ class BestWaveform:
     law: FrictionLaw = field(repr=False)
 
     def plot(self) -> Any:
-        """A matplotlib figure: the sine and the best drive over a period, and the motions they make."""
+        """Draw the sine and the best drive over a period, and the motions that they cause.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Figure.
+        """
         from frictionlab.charts.fits import best_waveform_figure  # with matplotlib, which takes a second
 
         motions = {}
@@ -147,22 +181,49 @@ def best_waveform(
     goal: Aim = "lowest",
     starts: int = _FEW_STARTS,
 ) -> BestWaveform:
-    """The waveform of the drive (or of a prescribed slip), as strong as its sine, with the lowest mean friction.
+    """Find the waveform of the drive, or of a prescribed slip, with the lowest or highest mean friction.
 
-    harmonics: the highest order whose amplitude and phase are chosen. direction: whether the drive may turn in the
-    plane, too. equal: what it has in common with the sine of the drive's size: ``power``, the mean power that loads
-    put into the body as it then moves (energy_input over its time); ``amplitude``, the largest value of the load;
-    ``rms``, its root mean square, with which currents and their heat go. goal: ``lowest``, which may be below 0 (a
-    body driven against the belt), or ``highest``. starts: of the search, the first is the sine; each asks for some
-    2000 steady states, at equal power for 8000.
+    It is as strong as the sine of the drive.
 
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    harmonics : int, >= 1, default 5
+        Highest order whose amplitude and phase are chosen.
+    direction : bool, default False
+        Whether to choose the direction of the drive in the plane, too.
+    equal : {"power", "amplitude", "rms"}, default "power"
+        Measure of strength that is that of the sine: "power", the mean power that loads put into the body as
+        it then moves (``energy_input`` over its time); "amplitude", the largest value of the load; "rms", its
+        root mean square, which determines currents and their heat.
+    goal : {"lowest", "highest"}, default "lowest"
+        Mean friction that is looked for. The lowest one may be below 0: a body driven against the belt.
+    starts : int, >= 1, default 3
+        Number of starts of the search; the first is the sine. Each needs some 2000 steady states, at equal
+        power 8000.
+
+    Returns
+    -------
+    BestWaveform
+        Best drive, and its mean friction beside that of the sine.
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense, or the sine has no mean friction.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> found = fl.best_waveform(scene, fl.Coulomb(mu=0.4), harmonics=2, equal="rms", starts=1)
     >>> found.mean_friction < 0.7 * found.sine_mean_friction
     True
-
-    Raises ValueError or TypeError for what makes no sense, or where the sine has no mean friction.
     """
     for name, value, allowed in (("equal", equal, get_args(Equal)), ("goal", goal, get_args(Aim))):
         if value not in allowed:

@@ -36,12 +36,36 @@ USUAL_POINTS, USUAL_END = 40, 1.2
 
 @dataclass(frozen=True, eq=False)
 class Equivalent:
-    """The nearest curve of a model to another one.
+    """Nearest curve of one model to that of another.
 
-    values: its free numbers. distance: of mean friction coefficients at the belt speeds, the largest or the root mean
-    square, as asked; distance_error: bound on its error from those of both curves; at: the belt speed of the
-    largest; rms: the root mean square. table: a row for each value of what was varied, or the reason
-    why there is no answer. curves: both, row by row.
+    ``fl.equivalent`` returns it.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        Free numbers of the model at the nearest curve.
+    distance : float
+        Distance of the mean friction coefficients at the belt speeds [-]: the largest or the root mean
+        square, as asked for.
+    distance_error : float
+        Bound on the error of ``distance`` from the errors of both curves [-].
+    at : float
+        Belt speed of the largest distance.
+    rms : float
+        Root mean square distance [-].
+    table : pandas.DataFrame
+        A row for each value of the varied input, with the reason if there is no answer.
+    curves : pandas.DataFrame
+        Both curves, a row for each belt speed.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> other = (scene, fl.Coulomb(mu=0.3), {"mu": (0.1, 1.0)})
+    >>> found = fl.equivalent((scene, fl.Coulomb(mu=0.4)), other, belt_speed=[5, 20, 40])
+    >>> found.curves.shape
+    (3, 3)
     """
 
     values: dict[str, float]
@@ -53,8 +77,15 @@ class Equivalent:
     curves: pd.DataFrame
 
     def plot(self) -> Any:
-        """A matplotlib figure: both curves, or the distance over what was varied.
+        """Draw both curves, or the distance over the varied input.
 
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Figure.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -76,21 +107,46 @@ def equivalent(
     over: Mapping[str, Sequence[float]] | None = None,
     starts: int = STARTS,
 ) -> Equivalent:
-    """The numbers that bring the curve of another model nearest to that of this one.
+    """Find the numbers of a model that bring its curve nearest to that of another model.
 
-    of: a scene and a law. among: another scene and law, and ranges of its free numbers as for ``fit``. belt_speed:
-    40 up to 1.2 V_lin where left out. norm: whether the largest distance is made small, or its root mean square.
-    over: one input of both scenes and its values, such as ``{"drive.frequency": [1, 1.5]}``: the numbers are found
-    anew for each; what is told beside the table is the first that has an answer.
+    Parameters
+    ----------
+    of : tuple of Scene and FrictionLaw
+        Model whose curve is to be approached.
+    among : tuple of Scene, FrictionLaw and dict
+        Model with free numbers, and their ranges as for ``fit``.
+    belt_speed : array_like of float, shape (n,), optional
+        Belt speeds [omega_1 L; m/s for a scene in SI units]; 40 up to 1.2 V_lin if left out, with V_lin the
+        largest velocity of the body without friction.
+    norm : {"largest", "rms"}, default "largest"
+        Distance that is made small: the largest one, or the root mean square.
+    over : dict of str to list of float, optional
+        One input of both scenes and its values, such as ``{"drive.frequency": [1, 1.5]}``. The numbers are
+        found anew for each value; attributes beside ``table`` are those of the first value that has an
+        answer.
+    starts : int, >= 1, default 8
+        Number of starts of the search.
 
+    Returns
+    -------
+    Equivalent
+        Numbers, distance and curves.
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense, or no pair of curves has a mean friction everywhere.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> other = (scene, fl.Coulomb(mu=0.3), {"mu": (0.1, 1.0)})
     >>> found = fl.equivalent((scene, fl.Coulomb(mu=0.4)), other, belt_speed=[5, 20, 40])
     >>> round(found.values["mu"], 6), found.distance < 1e-7
     (0.4, True)
-
-    Raises ValueError or TypeError for what makes no sense, or where no pair of curves has a mean friction everywhere.
     """
     if norm not in ("largest", "rms"):
         raise ValueError(f"norm must be 'largest' or 'rms', got {norm!r}")
@@ -205,10 +261,27 @@ BELT = "belt_speed"
 
 @dataclass(frozen=True, eq=False)
 class Experiments:
-    """Experiments, the best first.
+    """Experiments ranked by how well they distinguish models, the best first.
 
-    table: the inputs of each, the mean friction by each model (``mean_1``, ``mean_2``, ...), apart: the smallest
-    distance between two models over sigma, and the two that lie so near. best: the inputs of the first.
+    ``fl.discriminate`` returns it.
+
+    Attributes
+    ----------
+    table : pandas.DataFrame
+        A row for each experiment: its inputs, the mean friction by each model (``mean_1``, ``mean_2``, ...),
+        ``apart``, the smallest distance between two models over sigma, and ``nearest``, these two models.
+    inputs : tuple of str
+        Names of the inputs.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> models = [(scene, fl.Coulomb(mu=0.4)), (scene, fl.Coulomb(mu=0.5))]
+    >>> found = fl.discriminate(models, {"belt_speed": (1, 60)}, sigma=0.01)
+    >>> list(found.best), found.table["nearest"].iloc[0]
+    (['belt_speed'], '1 and 2')
+    >>> found.plot().savefig("experiments.svg")
     """
 
     table: pd.DataFrame
@@ -216,11 +289,17 @@ class Experiments:
 
     @property
     def best(self) -> dict[str, float]:
-        """The inputs of the experiment that tells the models apart best."""
+        """Inputs of the experiment that distinguishes the models best."""
         return {name: float(self.table[name].iloc[0]) for name in self.inputs}
 
     def plot(self) -> Any:
-        """A matplotlib figure: how far apart the models are, over each input."""
+        """Draw the distance between the models over each input.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Figure.
+        """
         from frictionlab.charts.fits import experiments_figure  # with matplotlib, which takes a second
 
         return experiments_figure(self.table, self.inputs)
@@ -229,20 +308,40 @@ class Experiments:
 def discriminate(
     models: Sequence[tuple[Scene, FrictionLaw]], experiments: Mapping[str, tuple[float, float]], sigma: float
 ) -> Experiments:
-    """Rank experiments by how well they tell models apart.
+    """Rank experiments by how well they distinguish models.
 
-    models: two or more scenes with a law. experiments: inputs of the scenes by path, with the range that can be set,
-    such as ``{"belt_speed": (1, 60), "drive.frequency": (0.5, 2)}``. sigma: standard error of a measured mean
-    friction coefficient. An experiment at which a model has no mean friction is left out.
+    An experiment at which a model has no mean friction is left out.
 
+    Parameters
+    ----------
+    models : list of tuple of Scene and FrictionLaw
+        Two or more models.
+    experiments : dict of str to tuple of float
+        Range of each input of the scenes that can be set, by path, such as
+        ``{"belt_speed": (1, 60), "drive.frequency": (0.5, 2)}``.
+    sigma : float, > 0
+        Standard error of a measured mean friction coefficient [-].
+
+    Returns
+    -------
+    Experiments
+        Experiments, the best first.
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> models = [(scene, fl.Coulomb(mu=0.4)), (scene, fl.Coulomb(mu=0.5))]
     >>> found = fl.discriminate(models, {"belt_speed": (1, 60)}, sigma=0.01)
     >>> found.best["belt_speed"] > 45, bool(found.table["apart"].iloc[0] >= 10)
     (True, True)
-
-    Raises ValueError or TypeError for what makes no sense.
     """
     if len(models) < 2:
         raise ValueError(f"models: two or more are needed to tell apart, got {len(models)}")

@@ -146,9 +146,40 @@ PARTS_OF_A_FIT: dict[str, Callable[[FittedLaw], Any]] = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedLaws:
-    """Laws fitted to measurements, the best first told: that which foretells blocks left out best.
+    """Laws fitted to measurements; the first named is best: it predicts blocks left out best.
 
-    measured: what they were fitted to. fitted: a record each law; failed: laws without a fit and why.
+    ``fl.fit`` returns it.
+
+    Attributes
+    ----------
+    measured : Measurements
+        Measurements.
+    fitted : tuple of FittedLaw
+        Record of each law.
+    failed : dict of str to str
+        Reason for each law without a fit.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> data = {"belt_speed": [5, 15, 25, 35], "mean_friction": [0.05, 0.135, 0.22, 0.29]}
+    >>> found = fl.fit(data, fl.Coulomb(mu=0.3), scene, free={"mu": (0.1, 1.0)}, starts=2)
+    >>> found.law.mu == found.values["mu"] == found.best.values["mu"], found.scene == scene
+    (True, True)
+    >>> found.block_errors["mu"] > 0, found.naive_errors["mu"] > 0, found.intervals["mu"][0] < found.values["mu"]
+    (True, True, True)
+    >>> found.shapes, found.table["parameter"].tolist(), found.laws["status"].tolist()
+    ({'mu': 'bounded'}, ['mu'], ['ok'])
+    >>> len(found.residuals), found.sentences[0].partition(" with")[0]
+    (4, 'Coulomb fits')
+    >>> found.plot().savefig("fit.svg")
+    >>> print(found.report("fit.html", title="Fit"))
+    fit.html
+    >>> found.complete(print).is_interrupted
+    Coulomb: profiles
+    Coulomb: blocks left out
+    False
     """
 
     measured: Measurements
@@ -156,9 +187,22 @@ class FittedLaws:
     failed: dict[str, str] = field(default_factory=dict)
 
     def complete(self, tell: Callable[[str], None]) -> FittedLaws:
-        """Errors, profiles and what is foretold found now, law by law; an interrupt keeps the laws that are done.
+        """Compute errors, profiles and predictions now, law by law; an interrupt keeps the laws that are done.
 
-        tell: is told what is being found. Raises KeyboardInterrupt where none is done.
+        Parameters
+        ----------
+        tell : callable
+            Function that is called with the name of what is being computed.
+
+        Returns
+        -------
+        FittedLaws
+            These laws, or those that were done before an interrupt.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If an interrupt comes before a law is done.
         """
         done: list[FittedLaw] = []
         for each in self.fitted:
@@ -178,54 +222,57 @@ class FittedLaws:
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether laws were left out because of an interrupt."""
+        """True if an interrupt left laws out."""
         return STOPPED in self.failed.values()
 
     @property
     def best(self) -> FittedLaw:
-        """The law that foretells blocks left out best."""
+        """Law that predicts blocks left out best."""
         if len(self.fitted) == 1:
             return self.fitted[0]
         return min(self.fitted, key=lambda each: each.left_out.rms)
 
     @property
     def values(self) -> dict[str, float]:
-        """The fitted numbers of the best law."""
+        """Fitted numbers of the best law, by name."""
         return self.best.values
 
     @property
     def block_errors(self) -> dict[str, float]:
-        """Their standard errors, from blocks."""
+        """Standard errors of the fitted numbers of the best law, from blocks."""
         return self.best.errors(self.best.covariances.by_blocks)
 
     @property
     def naive_errors(self) -> dict[str, float]:
-        """Their standard errors if residuals were independent."""
+        """Standard errors of the fitted numbers of the best law as if residuals were independent."""
         return self.best.errors(self.best.covariances.naive)
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """Their intervals of 95 %."""
+        """Intervals of 95 % of the fitted numbers of the best law."""
         return self.best.intervals
 
     @property
     def shapes(self) -> dict[str, str]:
-        """Of each profile in a word: bounded, one-sided, flat or multimodal."""
+        """Shape of the profile of each fitted number, "bounded", "one-sided", "flat" or "multimodal"."""
         return self.best.shapes
 
     @property
     def law(self) -> FrictionLaw:
-        """The best law with its fitted numbers."""
+        """Best law with its fitted numbers."""
         return self.best.model.at(self.best.found.best.shares)[0]
 
     @property
     def scene(self) -> Scene | None:
-        """The scene with the fitted numbers; None for a path of slip."""
+        """Scene with the fitted numbers; None for a measured path of slip."""
         return self.best.model.at(self.best.found.best.shares)[1]
 
     @property
     def table(self) -> pd.DataFrame:
-        """A row for each law and number: value, block_error, naive_error, low, high, shape, at_bound."""
+        """Table with a row for each law and fitted number.
+
+        Columns: ``value``, ``block_error``, ``naive_error``, ``low``, ``high``, ``shape``, ``at_bound``.
+        """
         rows = []
         for each in self.fitted:
             block, naive = each.errors(each.covariances.by_blocks), each.errors(each.covariances.naive)
@@ -238,7 +285,7 @@ class FittedLaws:
 
     @property
     def laws(self) -> pd.DataFrame:
-        """A row for each law: how well it fits and foretells, and how the search went."""
+        """Table with a row for each law, on how well it fits and predicts, and how the search went."""
         rows: list[dict[str, Any]] = [
             {
                 "law": each.model.label,
@@ -259,7 +306,10 @@ class FittedLaws:
 
     @property
     def residuals(self) -> pd.DataFrame:
-        """A row for each law and measured row: measured, fitted, residual (fitted less measured), and the inputs."""
+        """Table of residuals with a row for each law and measured row.
+
+        Columns: ``measured``, ``fitted``, ``residual`` (fitted less measured), and the inputs.
+        """
         parts = [
             self.measured.table.drop(columns=[self.measured.value]).assign(
                 law=each.model.label, measured=self.measured.values, fitted=each.said, residual=each.raw
@@ -270,17 +320,43 @@ class FittedLaws:
 
     @property
     def sentences(self) -> list[str]:
-        """What was found, for reading."""
+        """Results as sentences."""
         return [*_which(self), *_how_sure(self), *_what_to_know(self)]
 
     def plot(self) -> Any:
-        """A matplotlib figure: what was measured, what each law says, what is left, and how that hangs together."""
+        """Draw data and fitted curves, residuals, and autocorrelation of the residuals.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Figure.
+        """
         from frictionlab.charts.fits import fit_figure  # with matplotlib, which takes a second
 
         return fit_figure(self)
 
     def report(self, path: Any, title: str = "") -> Any:
-        """Write a page with sentences, tables and, beside it, the figure; where it is. Raises SaveError, OSError."""
+        """Write a page with sentences and tables, and the figure beside it.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Path of the page.
+        title : str, default ""
+            Title of the page.
+
+        Returns
+        -------
+        Path
+            Path of the page.
+
+        Raises
+        ------
+        SaveError
+            If the page cannot be written.
+        OSError
+            If the figure cannot be written.
+        """
         from pathlib import Path
 
         from frictionlab.charts.fits import draw_fit

@@ -51,13 +51,26 @@ class GivenUnits(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Needs:
-    """What one curve needs.
+    """Parts of a scene that one curve needs, and the smallest model within a tolerance.
 
-    table: a row per set of things taken away, with the columns of ``columns.NEEDS``. sentences: the same for reading.
-    smallest: the smallest model within the tolerance (scene, law, method), nondimensional; the full one where nothing
-    may go. label: what tells this curve from others of its study. failed: whether the full scene lacks an answer that
-    it should have at some points.
+    ``fl.needs`` returns it.
 
+    Attributes
+    ----------
+    table : pandas.DataFrame
+        A row for each set of parts taken away, with the columns of ``columns.NEEDS``.
+    sentences : list of str
+        The same as sentences.
+    smallest : LesserModel
+        Smallest model within the tolerance (``scene``, ``law``, ``method``), nondimensional; the full model
+        if nothing can be taken away.
+    label : str
+        Label that distinguishes this curve from others of its study.
+    failed : bool
+        Whether the full scene lacks an answer that it should have at some points.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> found = fl.needs(scene, fl.Coulomb(mu=0.4))
@@ -78,8 +91,20 @@ class Needs:
         return "\n".join(self.sentences)
 
     def plot(self, ax: Any = None) -> Any:
-        """A matplotlib figure: bars of the change without each thing, against the tolerance. ax: axes to draw into.
+        """Draw the change of the mean without each part as bars, against the tolerance.
 
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw into; a figure is made if left out.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Figure.
+
+        Examples
+        --------
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
@@ -238,21 +263,44 @@ def needs(
     within: float | None = None,
     progress: ProgressAsked = None,
 ) -> Needs:
-    """What a scene needs: each of its parts is taken away, the smaller model solved, and the means compared.
+    """Find the parts that a scene needs: take each away, solve the smaller model, compare the means.
 
-    belt_speed [omega_1 L; m/s for a scene in SI units]: of the curve, that of the scene where left out.
-    within [-]: the tolerance on the mean friction coefficient; 1 % of steady sliding friction at the quickest belt
-    speed where left out.
-    progress: whether to tell on stderr from the third second on how far it is; None where a terminal or a notebook
-    shows it.
+    Parameters
+    ----------
+    scene : Scene
+        Body and belt, and what shakes them.
+    law : FrictionLaw
+        Law of friction.
+    belt_speed : array_like of float, shape (n,), optional
+        Belt speeds of the curve [omega_1 L; m/s for a scene in SI units]; that of the scene if left out.
+    within : float, > 0, optional
+        Tolerance on the mean friction coefficient [-]; 1 % of steady sliding friction at the quickest belt
+        speed if left out.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
 
+    Returns
+    -------
+    Needs
+        Changes of the mean, sentences, and the smallest model.
+
+    Raises
+    ------
+    ValueError
+        If a value makes no sense.
+    TypeError
+        If a value is of another kind.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> found = fl.needs(scene, fl.Coulomb(mu=0.4))
     >>> found.sentences[0]
     'harmonics above 9 are not needed: without them the mean changes by 1.91e-06 at belt speed 5'
-
-    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law = given_scene(scene), given_law(law)
     si = scene.dimensional

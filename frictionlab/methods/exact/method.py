@@ -73,16 +73,23 @@ def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
 class Exact(Method):
     """Steady states of Coulomb friction along one line, to rounding: events in closed form, no steps.
 
-    Between events the motion is that of a linear oscillator under loads and friction known in time, or rest on the
-    belt: sines, and between corners of loads, belt velocity and normal load parabolas. Each event is found by steps
-    that cannot pass it; the period is closed by Newton's method with derivatives carried through the events
-    (saltation), falling back to the map itself, which never expands.
+    Between events the motion is that of a linear oscillator under loads and friction known in time, or rest
+    on the belt: sines, and parabolas between corners of loads, belt velocity and normal load. Each event is
+    found by steps that cannot pass it. The period is closed by Newton's method with derivatives carried
+    through the events (saltation); if that fails, by iteration of the period map itself, which never expands.
 
-    certify: prove every mean in interval arithmetic, some milliseconds a point; needs python-flint, which
-    ``pip install 'frictionlab[certify]'`` installs.
+    Parameters
+    ----------
+    certify : bool, default False
+        Whether to prove every mean in interval arithmetic, which takes some milliseconds per point. It needs
+        python-flint, which ``pip install 'frictionlab[certify]'`` installs.
 
+    References
+    ----------
     Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="exact")

@@ -36,29 +36,45 @@ Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
 class March(Method):
     """Time stepping, period by period, until the motion repeats: no events, no shooting.
 
-    stepper: of laws without memory moreau (default: Moreau-Jean, friction projected on its disk), rk4 (Runge-Kutta of
-    order 4 on the jump itself, blind to it) or smoothed (DOP853 with step control on friction smoothed at rest); of
-    laws with bristles exponential (default: bristles carried exactly along the slip, of order 2, steps limited by the
-    mass held by its bristles alone), rk4 (steps limited by stiffness*speed/friction as well) or sdirk2 (L-stable, of
-    order 2, no limit); of laws with several memories or scalars rk4 (steps limited by their largest rate).
-    theta [-]: of moreau, 0.5 (default) or 1.
-    steps [-], >= 4: of all but smoothed, per period of the drive, per 2 pi where nothing drives. The mean is that of
-    so many steps, its error told by two and four times as many. Left out, steps are doubled until the error is
-    below the tolerance or a point has cost 16 million, and the mean extrapolated where the order can be seen.
-    width [scene velocity], > 0: of smoothed, 0.01 where left out; the mean is that of this width, its error tells
-    the bias by twice, half and a quarter of the width.
-    smoothing: of smoothed, tanh (default), square_root or arctan.
-    periods [-], >= 4: most periods to wait for the motion to repeat, 100000.
+    Steps end at the corners of loads, belt velocity and normal load. If several frequencies act, a period is
+    their common one. Under a normal load that changes, a law of one bristle may keep its stiffness (contact:
+    constant); other memory may not.
 
-    Steps end at the corners of loads, belt and normal load; where several frequencies act, a lap is their common
-    period. Under a load that changes, one bristle may keep its stiffness (contact: constant); other memory may not.
+    The motion starts from ``scene.initial``, else on the friction-free orbit, undriven at rest on the belt.
+    If no theorem makes the steady state unique, motions from starts far from each other must reach the same
+    one.
 
-    The motion starts from scene.initial, else on the friction-free orbit, undriven at rest on the belt. Where no
-    theorem makes the steady state unique, starts far from each other must reach the same.
+    Parameters
+    ----------
+    stepper : {"moreau", "rk4", "smoothed", "exponential", "sdirk2"}, optional
+        Stepper. For laws without memory: "moreau" (default: Moreau-Jean, friction projected on its disk),
+        "rk4" (Runge-Kutta of order 4, which ignores the jump of friction) or "smoothed" (DOP853 with step
+        control, friction smoothed at rest). For laws with bristles: "exponential" (default: bristles carried
+        exactly along the slip, of order 2, steps limited by the mass held by its bristles alone), "rk4"
+        (steps limited by stiffness*speed/friction as well) or "sdirk2" (L-stable, of order 2, no limit). For
+        laws with several memories or scalars: "rk4" (steps limited by their largest rate).
+    theta : float, 0.5 or 1, optional
+        Parameter theta [-] of "moreau"; 0.5 if left out.
+    steps : int, >= 4, optional
+        Steps per period of the drive, without a drive per 2 pi; of all steppers but "smoothed". The mean is
+        that of this number of steps, and its error is estimated with two and four times as many. If left out,
+        steps are doubled until the error is below the tolerance or a point has cost 16 million steps, and the
+        mean is extrapolated if the order can be seen.
+    width : float, > 0, optional
+        Width of the smoothing [scene velocity] of "smoothed"; 0.01 if left out. The mean is that of this
+        width, and its error estimates the bias from twice, half and a quarter of the width.
+    smoothing : {"tanh", "square_root", "arctan"}, optional
+        Smoothing function of "smoothed"; "tanh" if left out.
+    periods : int, >= 4, default 100000
+        Largest number of periods to wait for the motion to repeat.
 
+    References
+    ----------
     Sources: moreau: Moreau (1988), Jean (1999); rk4: Kutta (1901); smoothed: Hairer, Nørsett & Wanner (1993);
     exponential: Strang (1968); sdirk2: Alexander (1977).
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method=fl.March(steps=1000))

@@ -56,18 +56,29 @@ ONE_FOR_BRISTLES = "harmonic_balance balances bristle friction in one harmonic a
 
 
 class HarmonicBalance(OfOneModel):
-    """Harmonics of motion and friction balanced along the belt; for one of Coulomb friction the curve is explicit.
+    """Harmonic balance of motion and friction along the belt; explicit for one harmonic of Coulomb friction.
 
-    harmonics: how many, from 1 on.
-    tail: the mass beyond them as a free one, whose velocity is piecewise linear between the switches of Coulomb
-    friction, or nothing; true for 2 harmonics or more where left out. Without it the mean is off by the order
-    1/harmonics, with it by about harmonics^-3 (methods/reduced/reversals.py).
+    Bristle friction has a part in phase with the displacement as well, and needs a loop of the law at every
+    amplitude tried (methods/reduced/bristle.py).
 
-    The error is the distance to the mean of ``exact`` or ``shooting``. Bristle friction has a part in phase with the
-    displacement as well, and asks for a loop of the law at every amplitude looked at (methods/reduced/bristle.py).
+    Parameters
+    ----------
+    harmonics : int, >= 1, default 1
+        Number of harmonics.
+    tail : bool, optional
+        Whether the mass moves beyond these harmonics as a free one, whose velocity is piecewise linear
+        between the switches of Coulomb friction. True for 2 harmonics or more if left out. Without the tail
+        the error of the mean is of the order 1/harmonics, with it about harmonics^-3
+        (methods/reduced/reversals.py).
+    error : {"distance"}, default "distance"
+        Kind of the error, always the distance to the mean of ``exact`` or ``shooting``.
 
+    References
+    ----------
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method=fl.HarmonicBalance(harmonics=9))

@@ -43,13 +43,21 @@ from frictionlab.values.quantities import EPSILON, Floats
 class Mdsm(OfOneModel):
     """Direct separation of motion: the fast motion as if there were no friction, friction averaged over it.
 
-    Along the belt a closed form, in the plane a quadrature over the friction-free ellipse. A prescribed slip has no
-    motion to separate: its mean is exact, in closed form along the belt, across it and for a circle, by quadrature
-    for other ellipses. The error is what friction does to the motion: the distance to the mean of ``exact`` or
-    ``shooting``.
+    Along the belt the mean is a closed form, in the plane a quadrature over the friction-free ellipse. A
+    prescribed slip has no motion to separate. Its mean is exact: in closed form along the belt, across it and
+    for a circle, by quadrature for other ellipses. The error is the effect of friction on the motion.
 
+    Parameters
+    ----------
+    error : {"distance"}, default "distance"
+        Kind of the error, always the distance to the mean of ``exact`` or ``shooting``.
+
+    References
+    ----------
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5 and 6; in the plane the same mean over both components.
 
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="mdsm")

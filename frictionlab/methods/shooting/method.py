@@ -68,19 +68,24 @@ def starts_to_creep(scene: Scene) -> bool:
 
 
 class Shooting(Method):
-    """Shooting on the period map of any law, with whatever memory, on the line and in the plane.
+    """Shooting on the period map of any law, with or without memory, along one line or in the plane.
 
-    Integrates the deviation from the friction-free response by DOP853 with the instants of stick and release
-    resolved, bristles by Rodas5P or as a function of the way slid, planar slip next to rest implicitly in polar
-    coordinates, and closes the orbit by Broyden's method with Newton and Picard steps where it stalls. Where no
-    theorem makes the state unique it must attract, and starts far from each other must reach it.
-    Without a drive the period is an unknown too, and the answer is the state reached from scene.initial: steady
-    sliding, a cycle or rest. Under a prescribed slip the mean is quadrature, or that of the memory's closed loop. Of
-    a body by its receptance the free mass is followed, under a force found by balancing harmonics.
+    DOP853 integrates the deviation from the friction-free response, and the instants of stick and release are
+    resolved. Bristles are integrated by Rodas5P or computed as a function of the path slid. Planar slip near
+    rest is integrated implicitly in polar coordinates. Broyden's method closes the orbit, with Newton and
+    Picard steps if it stalls. If no theorem makes the state unique, the state must attract, and motions from
+    starts far from each other must reach it.
 
-    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023); balance: Darbre &
-    Wolf (1988).
+    Without a drive the period is an unknown, too, and the answer is the state reached from ``scene.initial``:
+    steady sliding, a cycle or rest. Under a prescribed slip the mean is computed by quadrature, or from the
+    closed loop of the memory. Of a body given by its receptance the motion of the free mass is integrated,
+    under a force found by balancing harmonics.
 
+    References ---------- Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P:
+    Steinebach (2023); balance: Darbre & Wolf (1988).
+
+    Examples
+    --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="shooting")

@@ -94,3 +94,24 @@ def test_its_study_keeps_its_promises():
 
     assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
     assert set(done.table["status"]) == {"ok"}
+
+
+JOINT = MaxwellSlip(mu=[0.2, 0.5, 1.0], stiffness=[1.0, 0.5, 0.5])
+"""Three sliders of reach 0.2, 1 and 2."""
+
+
+@pytest.mark.parametrize("amplitude", [0.3, 1.1, 1.5, 1.9, 2.1])
+def test_sliders_that_never_let_go_leave_the_mean_of_a_belt_at_rest_open(amplitude: float) -> None:
+    """A slider whose reach is beyond the amplitude keeps its deflection: any mean up to k (reach - amplitude)."""
+    scene = fl.Scene(belt_speed=0, slip=fl.Slip(velocity_amplitude=amplitude, frequency=1))
+    pairs = zip(JOINT.mu, JOINT.stiffness, strict=True)
+    most = sum(max(0.0, mu - stiffness * amplitude) for mu, stiffness in pairs)
+
+    state = fl.steady_state(scene, JOINT)
+
+    if most > 0.0:
+        assert state.status == "not_unique"
+        assert (state.mean_low, state.mean_high) == pytest.approx((-most, most), abs=1e-7)
+    else:
+        assert state.status == "ok"
+        assert abs(state.mean_friction) <= state.error + 1e-12

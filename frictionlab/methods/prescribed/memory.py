@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,13 @@ PERIODS = 100
 """For which a memory that does not forget is followed from each start."""
 FORGETS = 1.0 - 1e-6
 """Largest multiplier of a memory that converges from every start."""
+MOST_CORNERS = 4
+"""Deflections whose starts are tried in all combinations; of more all one way and all the other."""
+INSIDE = 0.999
+"""Share of the deflection of steady sliding: at its very limit rounding decides whether an element yields."""
+ROUGH, FINE, SAME_MEAN = 1e-6, 1e-9, 1e-6
+"""Accuracies of maps by which starts are followed, over the normal load, and the spread of one mean by fine ones."""
+HOLDS = "a deflection that never yields keeps what it began with"
 TWO_STARTS = "2 starts ended here, with no memory and with that of steady sliding"
 
 
@@ -71,6 +79,15 @@ class MemoryPoint:
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
         if not curve.closed.found[0] or not curve.reached[0] or multiplier > FORGETS:
             return self._followed(guess[0])
+        if self.belt_speed == 0.0 and self.law.memory_kind == "deflections":
+            # No belt drags every slider: one that never yields keeps the deflection it began with. The mirror image
+            # of a state is a state half a period later.
+            means = [float(curve.closed.mean[0]), *self._followed_from(self._corners(guess[0].size), FINE)]
+            if self.slip is None and self.law.obeys("oddness"):
+                means += [-mean for mean in means]
+            if max(means) - min(means) > max(float(curve.closed.error[0]), SAME_MEAN):
+                self.from_rest = curve.states[0]
+                return self._left_open(means, HOLDS)
         self.curve = curve
         constants = curve.reached[0] * -math.log(max(multiplier, 1e-300))
         self.tested = (
@@ -87,20 +104,46 @@ class MemoryPoint:
 
     def _followed(self, state: Floats) -> PrescribedMean:
         """Where the memory goes from steady sliding in either direction, and from rest, which is kept."""
-        means = []
-        swing = self._swing() + abs(self.belt_speed)
+        swing, starts = self._swing() + abs(self.belt_speed), []
         for side in (1.0, -1.0, 0.0):
             KernelCall(write_start)(self.maps, (0j, 0j, complex(side * swing)), state)
-            each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
-            states[0] = state
-            how = Follow(1e-6 * self.motion.normal_load, False)
-            orbit, trail = unknown_orbit(len(state)), Trail(each, states)
+            starts.append(state.copy())
+        return self._left_open(
+            self._followed_from(starts), "the memory does not converge from different starts"
+        )
+
+    def _corners(self, size: int) -> list[Floats]:
+        """Starts in which each deflection is as in steady sliding one way or the other; the last from rest."""
+        sides = np.empty((3, size))
+        for row, side in enumerate((1.0, -1.0, 0.0)):
+            KernelCall(write_start)(self.maps, (0j, 0j, complex(side * self._swing())), sides[row])
+        moved = np.flatnonzero(sides[0] != sides[1])
+        choices = product((0, 1), repeat=len(moved)) if len(moved) <= MOST_CORNERS else [(0,), (1,)]
+        corners = []
+        for choice in choices:
+            corner = sides[2].copy()
+            corner[moved] = INSIDE * sides[np.broadcast_to(choice, moved.shape), moved]
+            corners.append(corner)
+        return [*corners, sides[2]]
+
+    def _followed_from(self, starts: list[Floats], accuracy: float = ROUGH) -> list[float]:
+        """Mean of the last period from each start that comes to repeat; the state of the last one is kept.
+
+        A state that comes back after two periods stands at a limit, where rounding decides whether it yields.
+        """
+        means: list[float] = []
+        for start in starts:
+            each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(start)))
+            states[0] = start
+            how = Follow(accuracy * self.motion.normal_load, False)
+            orbit, trail = unknown_orbit(len(start)), Trail(each, states)
             arguments = self.maps, self.belt_speed, self.body.periods, how, orbit, trail
-            (_repeats, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
+            (repeats, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
             self.seconds += seconds
-            means.append(each[count - 1])
+            if repeats <= 1:
+                means.append(float(each[count - 1]))
             self.from_rest = states[count]
-        return self._left_open(means, "the memory does not converge from different starts")
+        return means
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
         self.status, self.error_kind = "not_unique", ""

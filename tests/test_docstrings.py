@@ -93,7 +93,7 @@ def mistakes(thing: Any) -> list[str]:
         "a colon, which napoleon reads as a type": isinstance(thing, property | cached_property)
         and ": " in first,
         "first line begins with": first.partition(" ")[0] in BAD_BEGINNINGS,
-        "sections": names != [name for name in SECTIONS if name in names],
+        "sections": names != [name for name in SECTIONS if name in names] or "---" in "".join(parts.values()),
         "not told": sorted(wanted - set(fields)),
         "told, but not there": sorted(set(fields) - wanted - {"label"}),
         "without a type or a meaning": [name for name, both in told if "" in both],
@@ -136,6 +136,12 @@ def _right(speed: float, **others: float) -> float:
         ("        Speed.\n", "", "without a type or a meaning: ['speed']"),
         ("\n    Returns\n    -------\n    float\n        Number.\n", "", "Returns: True"),
         ("Returns\n    -------", "Result\n    ------", "sections: True"),
+        ("Returns\n    -------", "Returns -------", "sections: True"),
+        (
+            "Return a number.",
+            "Return a number.\n\n    Returns\n    -------\n    float\n        Number.",
+            "sections: True",
+        ),
     ],
 )
 def test_a_docstring_in_another_form_is_noticed(right: str, wrong: str, point: str) -> None:

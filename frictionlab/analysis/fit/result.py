@@ -146,7 +146,7 @@ PARTS_OF_A_FIT: dict[str, Callable[[FittedLaw], Any]] = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedLaws:
-    """Laws fitted to measurements; the first named is best: it predicts blocks left out best.
+    """Laws fitted to measurements; the best one predicts blocks left out best, and is named first.
 
     ``fl.fit`` returns it.
 

@@ -81,8 +81,10 @@ class Shooting(Method):
     closed loop of the memory. Of a body given by its receptance the motion of the free mass is integrated,
     under a force found by balancing harmonics.
 
-    References ---------- Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P:
-    Steinebach (2023); balance: Darbre & Wolf (1988).
+    References
+    ----------
+    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023); balance:
+    Darbre & Wolf (1988).
 
     Examples
     --------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import inspect
 import re
+from ast import literal_eval
 from functools import cached_property
 from pathlib import Path
 from types import FunctionType, MethodType
@@ -26,7 +27,7 @@ METHODS = {fl.Scene: ["with_"], fl.Study: ["of", "to_yaml", "cases"]}
 HANDED = *RESULTS, fl.Study
 """Classes that users do not construct: their fields are attributes."""
 
-SECTIONS = ["Parameters", "Attributes", "Returns", "Raises", "Notes", "References", "Examples"]
+SECTIONS = ["Parameters", "Attributes", "Returns", "Raises", "See Also", "Notes", "References", "Examples"]
 """Sections in the order of numpydoc."""
 BAD_BEGINNINGS = "The", "What", "Whether", "Of", "How", "Where"
 
@@ -77,27 +78,35 @@ def _returns(thing: Any) -> bool:
     return said not in (False, None, "None")
 
 
+def _other_defaults(thing: Any, fields: dict[str, tuple[str, str]]) -> list[str]:
+    """Names of the parameters whose docstring has another default than their signature."""
+    taken = inspect.signature(thing).parameters if fields else {}
+    told = {name: kind.partition("default ")[2] for name, (kind, _) in fields.items() if name in taken}
+    left_out = {name: taken[name].default for name, default in told.items() if default}
+    return [name for name, value in left_out.items() if literal_eval(told[name]) not in (value, str(value))]
+
+
 def mistakes(thing: Any) -> list[str]:
     """Tell in which points the docstring of a public name is not in numpydoc form."""
     docstring = inspect.getdoc(thing) or ""
     parts, (first, second) = _sections(docstring), [*docstring.split("\n"), ""][:2]
-    names = [name for name in parts if name]
-    fields = _entries(parts.get("Attributes" if thing in HANDED else "Parameters", ""))
-    returned, raised = (_entries(parts.get(name, "")) for name in ("Returns", "Raises"))
-    wanted, told = (
-        _wanted(thing),
-        [*fields.items(), *((name, ("-", why)) for name, (_, why) in raised.items())],
-    )
+    names, text = [name for name in parts if name], "".join(parts.values())
+    given, own, returned, raised = (_entries(parts.get(name, "")) for name in SECTIONS[:4])
+    reasons = [why for part in (given, own, returned, raised) for _, why in part.values()]
+    fields, of_class = (own, given) if thing in HANDED else (given, own)
+    wanted, is_property = _wanted(thing), isinstance(thing, property | cached_property)
     found = {
         "first line is no sentence": not first.endswith(".") or second,
-        "a colon, which napoleon reads as a type": isinstance(thing, property | cached_property)
-        and ": " in first,
         "first line begins with": first.partition(" ")[0] in BAD_BEGINNINGS,
-        "sections": names != [name for name in SECTIONS if name in names] or "---" in "".join(parts.values()),
+        "a colon, which napoleon reads as a type": is_property and ": " in first,
+        "sections": names != [each for each in SECTIONS if each in names] or "---" in text,
         "not told": sorted(wanted - set(fields)),
-        "told, but not there": sorted(set(fields) - wanted - {"label"}),
-        "without a type or a meaning": [name for name, both in told if "" in both],
-        "Returns": bool(returned) != _returns(thing) or any(not meaning for _, meaning in returned.values()),
+        "told, but not there": sorted(set(fields) - wanted - {"label"})
+        + [name for name in of_class if not hasattr(thing, name)],
+        "without a type": [name for name, (kind, _) in [*given.items(), *own.items()] if not kind],
+        "another default": _other_defaults(thing, fields),
+        "without a meaning": "" in reasons,
+        "Returns": bool(returned) != _returns(thing),
     }
     return [f"{point}: {where}" for point, where in found.items() if where]
 
@@ -132,8 +141,9 @@ def _right(speed: float, **others: float) -> float:
         ("Return a number.", "The number.", "first line begins with: True"),
         ("speed : float\n        Speed.\n    ", "", "not told: ['speed']"),
         ("**others : float", "load : float", "told, but not there: ['load']"),
-        ("speed : float", "speed", "without a type or a meaning: ['speed']"),
-        ("        Speed.\n", "", "without a type or a meaning: ['speed']"),
+        ("speed : float", "speed", "without a type: ['speed']"),
+        ("speed : float", "speed : float, default 1", "another default: ['speed']"),
+        ("        Speed.\n", "", "without a meaning: True"),
         ("\n    Returns\n    -------\n    float\n        Number.\n", "", "Returns: True"),
         ("Returns\n    -------", "Result\n    ------", "sections: True"),
         ("Returns\n    -------", "Returns -------", "sections: True"),

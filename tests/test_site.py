@@ -63,9 +63,15 @@ def test_python_s_pages_tell_the_type_of_every_parameter(pages: dict[str, str]) 
 
     assert set(entries) >= functions | {"Scene", "Dimensional", "Study", "SteadyState", "LuGre", "March"}
     for name, entry in entries.items():
-        told = dict(re.findall(r"<strong>\**(\w+)</strong>(?: \((.+?)\))? \N{EN DASH} \S", entry, re.DOTALL))
+        told = {each for each, text in _entries(entry) if re.match(r"\(.+?\) \N{EN DASH} \S", text)}
         taken = set(inspect.signature(getattr(fl, name)).parameters) - {"label"}
-        assert [each for each in taken if not told.get(each)] == [], name
+        assert sorted(taken - told) == [], name
+
+
+def _entries(field: str) -> list[tuple[str, str]]:
+    """Names that a list of parameters or errors tells of, each with the text behind it."""
+    found = re.findall(r"<p><strong>\**(\w+)</strong>(.*?)</p>", field, re.DOTALL)
+    return [(name, re.sub(r"<[^>]+>", "", text).strip()) for name, text in found]
 
 
 def test_what_is_raised_has_a_reason_and_a_row_in_the_table(pages: dict[str, str]) -> None:
@@ -74,8 +80,8 @@ def test_what_is_raised_has_a_reason_and_a_row_in_the_table(pages: dict[str, str
     )
     for name in ("api", "api_scenes"):
         fields = re.findall(r">Raises<.*?</dd>", pages[name], re.DOTALL)
-        found = [re.findall(r"<strong>(\w+)</strong>(?: \N{EN DASH} (\S))?", each) for each in fields]
+        found = [_entries(each) for each in fields]
         assert found
         assert all(found)
-        assert [error for each in found for error, reason in each if not reason] == []
+        assert [error for each in found for error, reason in each if not re.search(r"\w", reason)] == []
         assert {error for each in found for error, _ in each} - listed - set(vars(builtins)) == set()

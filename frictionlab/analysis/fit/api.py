@@ -109,7 +109,7 @@ def fit(
     scene : Scene, optional
         Scene of the measurements; none for a measured path.
     free : dict of str to tuple
-        Ranges by name, ``{"mu": (0.1, 1)}``, of which each law takes those it has, or by path,
+        Required. Ranges by name, ``{"mu": (0.1, 1)}``, of which each law takes those it has, or by path,
         ``"scene.damping_ratio"``. Instead of a tuple, a mapping with from, to and spacing (linear or log).
     blocks : array_like, shape (n,), optional
         Label of the block of each row, instead of the column; rows of different blocks are independent.

@@ -134,9 +134,9 @@ class BestWaveform:
     --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
-    >>> found = fl.best_waveform(scene, fl.Coulomb(mu=0.4), harmonics=2, equal="rms", starts=1)
-    >>> found.mean_friction < found.sine_mean_friction, len(found.table) > 2
-    (True, True)
+    >>> found = fl.best_waveform(scene, fl.Coulomb(mu=0.4), harmonics=1, equal="rms", starts=1)
+    >>> round(found.mean_friction, 4), round(found.sine_mean_friction, 4), len(found.table)
+    (0.1333, 0.1333, 5)
     >>> found.plot().savefig("waveforms.svg")
     """
 

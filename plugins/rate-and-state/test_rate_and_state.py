@@ -172,3 +172,28 @@ def test_its_studies_keep_their_promises(study):
 
     assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
     assert set(done.table["status"]) == {"ok"}
+
+
+SLIDER = {"mass": "1000 kg", "stiffness": "1.0e9 N/m", "damping": "0 N s/m", "normal_load": "1.0e6 N"}
+"""A laboratory slider, whose cycles last hundreds of free periods and are stick for nearly all of that time."""
+ROCK = RateAndState(mu=0.6, a=0.005, b=0.01, slip_length="1 um", reference_speed="1 nm/s")
+
+
+@deep("thousands of periods of the free mass")
+@pytest.mark.parametrize(
+    ("belt_speed", "mean"),
+    # Radau in the logarithms of slip speed and age at 1e-9
+    [(30, 0.515383438), (100, 0.515367543), (300, 0.5153806495)],
+)
+def test_a_mean_that_is_hardly_known_is_not_told(belt_speed: float, mean: float) -> None:
+    """At 30 um/s the answer was .43 +- 1.7, status ok."""
+    scene = fl.Scene(dimensional={**SLIDER, "belt_speed": f"{belt_speed} um/s"})
+
+    state = fl.steady_state(scene, ROCK)
+
+    if state.status == "ok":
+        assert abs(state.mean_friction - mean) <= state.error <= 1e-3 * 0.6
+        assert state.velocity_amplitude > 0.02  # [m/s here] of the slip, which few of the periods show
+    else:
+        assert state.status == "failed"
+        assert "which is no answer" in state.reason

@@ -43,7 +43,7 @@ from frictionlab.methods.shooting.attractors import (
     same_state,
     undamped,
 )
-from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, spread_of_one_mean
+from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, is_earned, spread_of_one_mean, too_wide
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
@@ -266,7 +266,12 @@ class SteadyStates:
             periods = carried_for(self.scenes[i], self.problem.mass.normal_load * friction_at_rest(law))
             if periods > MOST and self.status[i] != "ok" and can_hold(scene, law):
                 self._add(i, CARRIED.format(periods * self.problem.common))
-            if self.status[i] == "ok" and not error <= tolerance and self.error_kind[i] != STATISTICAL:
+            statistical = self.status[i] == "ok" and self.error_kind[i] == STATISTICAL
+            if statistical and not is_earned(error, law, tolerance):
+                said = f"{self.reason[i]} {too_wide(self.mean[i].real, error)}"
+                self._clear(i)
+                self.reason[i] = said
+            if self.status[i] == "ok" and not error <= tolerance and not statistical:
                 said = f"the error is above the tolerance {tolerance:.1e}"
                 self._add(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
 

@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.theory.rest import friction_at_rest
 from frictionlab.values.quantities import Floats
 
 BLOCKS = 8
@@ -29,6 +31,8 @@ MOST_ALIKE = 0.9
 SAME_MEAN, LEAST_APART = 1.5, 1e-6
 """Difference of two means, over what their errors together allow at two standard errors, that keeps them one; and the
 smallest that tells them apart."""
+EARNED = 1e-3
+"""Largest error of a mean that is told, over friction at rest."""
 DRIVEN, FREE = "drive periods", "periods of the free mass"
 """What it is taken over."""
 SHARED = "states that differ have this mean: "
@@ -46,6 +50,16 @@ class LongMean(NamedTuple):
         """What it is a mean of."""
         named = "quasi-periodic" if self.quasi_periodic else "chaotic"
         return f"the motion does not repeat ({named}): its mean over {window:.0f} {of}"
+
+
+def is_earned(error: float, law: FrictionLaw, tolerance: float) -> bool:
+    """Check that a long mean is known well enough: to the tolerance, or to a thousandth of friction at rest."""
+    return error <= max(tolerance, EARNED * friction_at_rest(law))
+
+
+def too_wide(mean: float, error: float) -> str:
+    """Return why a long mean is not told."""
+    return f"is known to be {mean:.4g} +- {error:.2g} only, which is no answer"
 
 
 def birkhoff_mean(values: Floats) -> float:

@@ -21,7 +21,14 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import STATISTICAL, Answers, Status
 from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
-from frictionlab.methods.shooting.long_mean import FREE, LongMean, birkhoff_mean, long_mean
+from frictionlab.methods.shooting.long_mean import (
+    FREE,
+    LongMean,
+    birkhoff_mean,
+    is_earned,
+    long_mean,
+    too_wide,
+)
 from frictionlab.methods.shooting.long_motions import SMALL_ERROR, drifts
 from frictionlab.methods.shooting.undriven_path import (
     FOLLOWED,
@@ -56,8 +63,9 @@ BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
 LOOKS_AVERAGED, FEWEST_LOOKS = (512, 1024, 2048), 128
 """Counts of looks after which a motion that comes to nothing is averaged, and the fewest that are."""
-TURNS_SHOWN = 64
-"""Of such a motion, from which columns other than the mean are read."""
+TURNS_SHOWN, NEARLY_ALL = (64.0, 256.0, 1024.0), 0.9
+"""Turns of such a motion from which columns other than the mean are read: the fewest in which its slip is nearly as
+quick as over all, by this share."""
 TRIALS = 10, 30, 100, 300, 1000
 """Counts of largest deflections after which a cycle is looked for however far apart they are."""
 FRICTION_SPREAD = 1e-4
@@ -73,7 +81,7 @@ those in which its way shrinks to half, or is followed by finer steps."""
 class PeriodicMotion(NamedTuple):
     """A periodic motion from a state: its period, mean friction, error and largest multiplier, and what it is.
 
-    long: of a motion that does not repeat, its mean, over so many turns.
+    long: of a motion that does not repeat, its mean, over so many turns. fastest: its slip meanwhile.
     """
 
     state: Floats
@@ -84,6 +92,7 @@ class PeriodicMotion(NamedTuple):
     kind: str
     long: LongMean | None = None
     turns: float = math.nan
+    fastest: float = math.nan
 
 
 class Reach(NamedTuple):
@@ -359,7 +368,15 @@ class Undriven:
             found = found._replace(error=found.error + 2.0 * abs(birkhoff_mean(finer) - birkhoff_mean(means)))
         turns = BETWEEN_LOOKS * len(means)
         return PeriodicMotion(
-            states[-1], math.nan, found.mean, found.error, math.nan, ModelWord.NEVER_REPEATS, found, turns
+            states[-1],
+            math.nan,
+            found.mean,
+            found.error,
+            math.nan,
+            ModelWord.NEVER_REPEATS,
+            found,
+            turns,
+            max(way.fastest[first:]),
         )
 
     def _means(self, state: Floats, looks: int, accuracy: float) -> Floats:
@@ -419,14 +436,23 @@ class Undriven:
             held = -motion.mean * whole
             return Orbit(0.5 * TURN * (NODES[None, :] + 1.0), x * whole, 0.0 * whole, held, np.array([True]))
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
-        turns = turns if motion.long is None else TURNS_SHOWN
+        if motion.long is not None:
+            turns = self._turns_that_show(motion)
         accuracy = max(0.1 * self.tolerance, LEAST)
         # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
         accuracy = accuracy / FINER if self.law.count() == 0 else accuracy
         track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
         parts = track.tau, track.x, track.v, track.friction, track.stick
         found = Orbit(*(part[: track.filled[0]] for part in parts))
-        return found if motion.long is None else replace(found, periods=TURNS_SHOWN)
+        return found if motion.long is None else replace(found, periods=int(turns))
+
+    def _turns_that_show(self, motion: PeriodicMotion) -> float:
+        """Turns of a motion that does not repeat in which its slip is as quick as it was over all."""
+        for turns in TURNS_SHOWN[:-1]:
+            track = self._path.follow(motion.state, turns, room=PANELS_AT_FIRST).track
+            if most_slip(track, self._path.speed) >= NEARLY_ALL * motion.fastest:
+                return turns
+        return TURNS_SHOWN[-1]
 
 
 def mean_of(span: Span) -> float:
@@ -451,6 +477,10 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
         motion, seconds[i] = once(undriven.motion_or_why_not, scene.belt_speed)
         if isinstance(motion, str):
             reason[i] = motion
+            continue
+        if motion.long is not None and not is_earned(motion.error, law, tolerance):
+            said = motion.long.sentence(motion.turns, FREE)
+            reason[i] = f"{said} {too_wide(motion.mean, motion.error)}"
             continue
         found[i] = undriven, motion
         status[i], model[i], kind[i] = "ok", motion.kind, "estimated"

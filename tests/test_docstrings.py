@@ -68,7 +68,7 @@ def _wanted(thing: Any) -> set[str]:
     """Names of the parameters of a function, or of the fields of a class. ``label`` is told once for all."""
     if not isinstance(thing, type | FunctionType | MethodType):
         return set()
-    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    stars: dict[Any, str] = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
     taken = inspect.signature(thing).parameters.values()
     return {f"{stars.get(each.kind, '')}{each.name}" for each in taken} - {"self", "label"}
 

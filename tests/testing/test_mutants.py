@@ -50,7 +50,7 @@ def test_each_mutant_differs_in_one_thing_and_no_words_are_changed(tmp_path: Pat
 
 
 def test_the_code_of_a_mutant_takes_the_place_of_the_functions_own() -> None:
-    changed = next(each for each in mutants(Path(decay.__file__)) if each.before == "-ways")
+    changed = next(each for each in mutants(Path(decay.__file__)) if each.before == "-lengths")
     copy = FunctionType(changed.code, vars(decay))
 
     assert changed.function == "exp_decay"

@@ -1,8 +1,8 @@
-"""Numbers in lanes taken from arrays and put into them; one of two select in every lane; functions lane by lane.
+"""Read and write lanes of a row, select between two values lane by lane, call functions lane by lane.
 
-Where Python runs a kernel, lanes are numpy arrays of any length, and one number is an array of none.
+If Python runs a kernel, lanes are numpy arrays of any length; a single number has no dimension.
 
-The friction of a law without memory at several speeds of slip at once.
+``friction_by_lane`` computes the friction of a law without memory at several slip speeds at once.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _arrays: Any = numba.np.arrayobj
 _config: Any = numba.config
 
 ALIGNED = 8
-"""Of arrays of floats [bytes]: numba promises no more."""
+"""Alignment of arrays of floats [bytes]; numba promises no more."""
 
 
 def _pointer(context: Any, builder: Any, kind: Any, array: Any) -> Any:
@@ -161,7 +161,7 @@ def _least(typing: Any, lanes: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         least = values[0]
-        for apart in (1, 2, 4):  # each with the lane next to it, then pairs, then fours
+        for apart in (1, 2, 4):  # compare neighbouring lanes, then pairs, then fours
             places = [k ^ apart for k in range(LANE_COUNT)]
             order = _ir.Constant(_ir.VectorType(_ir.IntType(32), LANE_COUNT), places)
             other = builder.shuffle_vector(least, least, order)
@@ -232,45 +232,50 @@ def _room_in_python(count: int) -> int:
 
 
 def _made(intrinsic: Any, in_python: Any, on_arrays: Any = None) -> Any:
-    """The intrinsic, and what Python runs in its place."""
+    """Return an intrinsic for which Python runs ``in_python``, and ``on_arrays`` on arrays if it is given."""
     made = in_python if _config.DISABLE_JIT else run_as(_extending.intrinsic(intrinsic), in_python)
     return made if on_arrays is None else run_on_arrays_as(made, on_arrays)
 
 
 read_lanes = _made(_load, _read_row, _read_row)
-"""read_lanes(row): the lanes that a row of an array holds."""
+"""read_lanes(row): return the lanes in a row of an array."""
 write_lanes = _made(_store, _write_row, _write_row)
-"""write_lanes(row, lanes): put them into a row."""
+"""write_lanes(row, lanes): write lanes to a row of an array."""
 select = _made(_choose, _chosen_in_python, np.where)
-"""select(mask, first, second): the first where the mask is true, else the second; of one number, or lane by lane."""
+"""select(mask, first, second): return first if the mask is true, else second; of lanes lane by lane."""
 any_lane = _made(_some, _any_of_one, np.any)
-"""any_lane(mask): whether it is true in any lane."""
+"""any_lane(mask): check whether a mask is true in any lane."""
 lane = _made(_lane, _item, _item)
-"""lane(lanes, place): the number in one lane; one number as it is."""
+"""lane(lanes, place): return the number in one lane; a single number as it is."""
 with_lane = _made(_with_lane, _with_item, _with_item)
-"""with_lane(lanes, place, number): the lanes with another number in one; that number in the place of one."""
+"""with_lane(lanes, place, number): replace the number in one lane; a single number is replaced whole."""
 least_of_eight = _made(_least, _least_in_python, _least_in_python)
-"""least_of_eight(lanes): in every lane the least of the eight beside each other."""
+"""least_of_eight(lanes): write the smallest number of each group of eight neighbouring lanes to all eight."""
 as_one_number = _made(_join, _join_in_python, _join_in_python)
-"""as_one_number(numbers): a tuple of eight as lanes, a tuple of one as that."""
+"""as_one_number(numbers): join eight numbers to lanes; return the number of a tuple of one."""
 summed = _made(_sum_up, _sum_in_python, _sum_in_python)
-"""summed(number): the sum of all lanes; one number as it is."""
+"""summed(number): return the sum of all lanes; a single number as it is."""
 room_for = _made(_room_for, _room_in_python)
-"""room_for(count): how many lanes so many numbers are put into at once."""
+"""room_for(count): return the number of lanes of one pass over so many numbers.
+
+These are eight in a kernel, and ``count`` rounded up to a multiple of eight in Python."""
 
 
 PROBES = 1e-12, 1e-3, 0.3, 1.0, 10.0, 3e3
-"""Speeds at which the text of a law on an array is held against the law."""
+"""Speeds at which a law's source, run on an array, is compared with the law called speed by speed."""
 
 
 def takes_lanes(law: FrictionLaw) -> bool:
-    """Whether friction is along the slip and a function of its speed alone."""
+    """Check that friction is along the slip and depends on its speed alone."""
     return law.memory_kind == "none" and type(law).sliding_vector is FrictionLaw.sliding_vector
 
 
 @inner
 def friction_by_lane(law: Any, speeds: Any) -> Any:
-    """The coefficient at each of these speeds; lane by lane, for laws branch on speed."""
+    """Compute the friction coefficient at each of these speeds.
+
+    The law is called lane by lane, because laws branch on speed.
+    """
     found = speeds
     for k in range(LANE_COUNT):
         found = with_lane(found, k, law.sliding_friction(lane(speeds, k)))
@@ -291,7 +296,7 @@ def _one_by_one(law: FrictionLaw, speeds: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=64)
 def _serves(law: FrictionLaw) -> bool:
-    """Whether the text of the law means the same on an array."""
+    """Check that the law's source gives on an array the friction that it gives speed by speed."""
     speeds = np.array(PROBES)
     try:
         found = interpreted_on_arrays(type(law).sliding_friction)(law, speeds)

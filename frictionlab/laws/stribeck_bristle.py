@@ -20,7 +20,7 @@ class StribeckBristle(DampedLaw, ABC):
     Parameters
     ----------
     mu_kinetic : float, > 0
-        Friction coefficient in quick sliding, viscosity apart [-].
+        Friction coefficient in fast sliding, without the viscous term [-].
     mu_static : float, >= mu_kinetic, optional
         Friction coefficient at vanishing speed [-]; ``mu_kinetic`` if left out.
     stribeck_speed : float, > 0, default 1
@@ -42,7 +42,7 @@ class StribeckBristle(DampedLaw, ABC):
     contact_damping : float, >= 0, optional
         Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
     planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
-        Extension to the plane of the law of one direction, as in ``BristleLaw``.
+        Form of the law in the plane, as in ``BristleLaw``.
     """
 
     mu_kinetic: Positive
@@ -86,14 +86,17 @@ class StribeckBristle(DampedLaw, ABC):
         return self.bristle_stiffness * speed / stribeck_curve(self, speed)
 
     def steepest_fall(self) -> float:
-        """Return the slope of the curve at its inflection, less viscosity."""
+        """Return the slope of the fall of g at its inflection, minus viscosity; 0 if viscosity is larger."""
         drop = self.peak - self.mu_kinetic
         if drop == 0.0:
             return 0.0
         return max(0.0, drop / self.stribeck_speed * steepest_slope(self.stribeck_exponent) - self.viscosity)
 
     def damps_across(self, speed: float) -> bool:
-        """Check that damping^2 speed/mu_kinetic <= 4 (damping + viscosity)."""
+        """Check a sufficient condition that friction takes energy from motion across the slip.
+
+        It is damping^2 speed/mu_kinetic <= 4 (damping + viscosity), in a form that is not ``rotated``.
+        """
         lost = self.bristle_damping + self.viscosity
         return super().damps_across(speed) and self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost
 

@@ -1,11 +1,10 @@
-"""Bristles that know each axis by itself: along the belt and across it the mass moves as two bodies of one direction.
+"""Solve a planar scene with ``per-axis`` bristles as two scenes on a line: along the belt and across it.
 
-Springs, dashpots and loads keep to the axes, so that friction alone could couple the two, and ``per-axis`` friction
-does not. Across the belt the belt is at rest at every belt speed: one motion there serves a whole curve.
+Springs, dashpots and loads act along the axes. ``per-axis`` friction does so too, and nothing couples the
+axes. The velocity of the belt has no component across it: one solution there serves all belt speeds.
 
-Licence (20 scenes, curves of four belt speeds): 2.5 times faster in the median
-than the period map in the plane at 1e-6 (1.8 to 13 times), 2.9 times at 1e-9 (1.6 to 20), and half a digit more
-accurate.
+Licence, measured on 20 scenes with curves of four belt speeds: 2.5 times faster in the median than the period
+map in the plane at 1e-6 (1.8 to 13 times), 2.9 times at 1e-9 (1.6 to 20), and half a digit more accurate.
 """
 
 from __future__ import annotations
@@ -35,20 +34,22 @@ HELD_ACROSS = "across the belt the bristle is elastic under this load: the mean 
 
 
 class OneAxis(Scene):
-    """A scene of one degree of freedom whose mass is given as kernels see it."""
+    """Scene of one degree of freedom whose mass is given in the form that kernels take."""
 
     own: Mass
 
     def mass(self) -> Mass:
-        """As given."""
+        """Return the mass that was given."""
         return self.own
 
 
 @dataclass(frozen=True)
 class Across:
-    """The motion across the belt, as one along a belt at rest: its mean, error and multiplier, NaN where not known.
+    """Steady motion across the belt, solved as motion along a belt at rest.
 
-    orbit(): one of the motions where the mean hangs on the start, None where there is none.
+    mean, error, floquet(): mean friction, its error and the largest multiplier; NaN if unknown. orbit(): the
+    motion, or one of many if the mean depends on the start; None if there is none. reason: why the mean is
+    unknown; '' if it is known.
     """
 
     mean: float
@@ -60,15 +61,20 @@ class Across:
 
 
 def axes_apart(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether both axes move, by loads of one sine, and neither feels the other."""
+    """Check whether both axes move and can be solved apart.
+
+    This requires two degrees of freedom, sine loads, ``per-axis`` friction, no body that remembers, and
+    motion across the belt that does not die out.
+    """
     couples = law.planar_form() != "per-axis" or scene.degrees_of_freedom != 2 or not scene.is_harmonic
     return not couples and not scene.remembers and not along_the_belt(scene, law)
 
 
 def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
-    """Every answer along the belt, with what there is to tell across it.
+    """Return the answers along the belt, and mean, error, multiplier and orbit across it if they are known.
 
-    A mean along the belt is known whatever happens across: there columns are left empty, with the reason.
+    Means along the belt do not depend on the motion across. Columns across the belt stay empty, with the
+    reason, if that motion is not found.
     """
     across = _across(scenes[0], law, tolerance)
     along = solve_driven([_along(scene) for scene in scenes], law, tolerance)
@@ -87,7 +93,7 @@ def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> 
     def multipliers() -> Multipliers:
         known = Multipliers(nothing, nothing, []) if along.multipliers is None else along.multipliers()
         both = np.where(ok, np.maximum(known.modulus, across.floquet()), known.modulus)
-        # across the belt it is a quotient whose error is not known
+        # the multiplier across the belt comes from a difference quotient of unknown error
         return Multipliers(both, np.where(both == known.modulus, known.error, np.nan), known.reason)
 
     @cache
@@ -118,7 +124,7 @@ def _along(scene: Scene) -> Scene:
 
 
 def _turned(scene: Scene) -> OneAxis:
-    """The motion across the belt as one along a belt at rest."""
+    """Return a scene on a line, with the belt at rest, whose motion is that across the belt."""
     mass, across = scene.mass(), scene.transverse
     assert scene.drive is not None
     assert isinstance(across, Transverse)
@@ -157,7 +163,10 @@ def _first(floquet: Callable[[], Floats] | None) -> float:
 
 
 def _held(turned: OneAxis, law: FrictionLaw, tolerance: float) -> Across | None:
-    """The motion of a mass whose bristle only follows it, but for the mean that it is held at; None for any other."""
+    """Find the motion of a mass that never leaves the elastic range of its bristle.
+
+    The oscillation is known, the mean depends on the start. Return None for any other motion.
+    """
     if law.elastic_deflection() == 0.0 or turned.own.damping == 0.0:
         return None
     problem = PeriodicProblem(turned, law, tolerance)
@@ -178,7 +187,10 @@ Complexes = NDArray[np.complex128]
 
 
 def joined(along: Orbit, across: Orbit | None) -> Orbit:
-    """Both motions on panels that reach over no edge of either's; NaN across the belt where that is unknown."""
+    """Resample both motions on common panels, cut at every panel edge of either.
+
+    Components across the belt are NaN if that motion is unknown.
+    """
     if across is None:
         unknown = np.complex128(complex(0.0, math.nan))
         x, v, friction = (part.real + unknown for part in (along.x, along.v, along.friction))
@@ -194,7 +206,7 @@ def joined(along: Orbit, across: Orbit | None) -> Orbit:
 
 
 def _on(orbit: Orbit, tau: Floats) -> list[Complexes]:
-    """Position, velocity and friction on panels, each inside one of the orbit's."""
+    """Interpolate position, velocity and friction to panels, each inside one panel of the orbit."""
     inside = np.searchsorted(orbit.tau[:, 0], 0.5 * (tau[:, 0] + tau[:, -1]), side="right") - 1
     start, end = orbit.tau[inside, :1], orbit.tau[inside, -1:]
     weights = interpolation_weights(((2.0 * tau - start - end) / (end - start)).ravel())

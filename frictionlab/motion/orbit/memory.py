@@ -1,9 +1,10 @@
 """Memory of a law along a recorded orbit, from the recorded slip and friction.
 
-If friction is linear in the deflection of a bristle, it gives that deflection at each sample by itself. Any
-other memory is followed along the recorded slip from panel to panel until it repeats, with its rate met at
-every node (collocation; Hairer, Nørsett & Wanner, 1993, II.7). It is accepted if its friction is then the
-recorded one.
+Friction linear in the deflection of a bristle is solved for the deflection, sample by sample.
+
+Any other memory is integrated along the recorded slip, panel by panel, until it repeats. This is collocation
+(Hairer, Nørsett & Wanner, 1993, II.7): at every node but the first of a panel the derivative of the memory
+equals the rate of the law. The memory is accepted if its friction is the recorded one.
 """
 
 from __future__ import annotations
@@ -21,10 +22,9 @@ from frictionlab.motion.orbit.recorder import DERIVATIVE, NODES
 from frictionlab.values.quantities import Floats
 
 _SAME = 1e-6
-"""Largest difference between the friction of a memory and the recorded one, relative to the largest
-coefficient."""
+"""Largest difference between friction of a memory and recorded friction, relative to the largest recorded."""
 _STEEP = 1e-3
-"""Least slope of friction over deflection, relative to that at rest, at which friction gives the
+"""Smallest slope of friction over deflection, relative to that at rest, at which friction gives the
 deflection."""
 _CLOSED = 1e-9
 """Largest change over a period, relative to the memory, at which the memory repeats."""
@@ -36,9 +36,9 @@ Numbers = NDArray[np.complex128]
 
 
 class Contact(NamedTuple):
-    """Slip velocity, friction coefficient over the mean load, normal load over its mean, of any one shape.
+    """Slip velocity, friction over the mean normal load, normal load over its mean: arrays of equal shape.
 
-    line: whether all motion is along the belt. keeps_stiffness: whether the contact keeps its stiffness while
+    line: True if all motion is along the belt. keeps_stiffness: True if the contact keeps its stiffness while
     the load changes.
     """
 
@@ -55,7 +55,7 @@ class Contact(NamedTuple):
 
 
 def deflections(law: BristleLaw, contact: Contact) -> Numbers:
-    """Return the deflection of a bristle from its friction; NaN where friction does not give it."""
+    """Return the deflection of a bristle from its friction; NaN if friction does not give it."""
     resistance: Any = bristle_on_the_line if contact.line else bristle_in_the_plane
     found = np.full(contact.slip.shape, np.nan + 0j)
     for place in np.ndindex(contact.slip.shape):
@@ -81,7 +81,10 @@ def _deflection(resistance: Any, law: BristleLaw, w: Any, c: Any) -> Any:
 
 
 def followed(law: FrictionLaw, tau: Floats, contact: Contact) -> Numbers | None:
-    """Return periodic memories along an orbit [panels, nodes, count]; None if friction does not match."""
+    """Return periodic memories along an orbit [panels, nodes, count].
+
+    Return None if the memory is not found, does not repeat, or has other friction than was recorded.
+    """
     path, start = _Path(law, contact), _in_sliding(law, contact)
     for _ in range(_MOST_PERIODS):
         found = _one_period(path, tau, start)
@@ -94,7 +97,10 @@ def followed(law: FrictionLaw, tau: Floats, contact: Contact) -> Numbers | None:
 
 
 def _in_sliding(law: FrictionLaw, contact: Contact) -> Numbers:
-    """Return memories of steady sliding at the fastest slip of the orbit; zero if nothing slips."""
+    """Return memories of steady sliding at the fastest slip of the orbit; zero if nothing slips.
+
+    For a bristle this is the presliding length, along the slip.
+    """
     w = contact.at(np.unravel_index(np.abs(contact.slip).argmax(), contact.slip.shape))[0]
     if w == 0.0:
         return np.zeros(law.count(), np.complex128)
@@ -110,7 +116,7 @@ class _Path(NamedTuple):
     contact: Contact
 
     def resistance(self, place: Any, memory: Numbers) -> tuple[list[Any], Any]:
-        """Return the rates of all memories at a place, and the friction coefficient over the mean load."""
+        """Return the rates of all memories at a place, and the friction force over the mean normal load."""
         law, (w, _, n) = self.law, self.contact.at(place)
         scalars = self.contact.line or law.memory_kind == "scalars"
         held: list[Any] = [float(each.real) if scalars else complex(each) for each in memory]

@@ -15,11 +15,13 @@ from frictionlab.values.quantities import Floats
 class Orbit:
     """Period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
 
-    tau [panels, nodes] increases. x, v, friction [panels, nodes] are complex (x1 + i x2); friction is the
-    coefficient along the slip velocity (the resistance), NaN in a direction of which nothing is known. stick
-    [panels] marks pieces at rest on the belt; it is None if the method cannot detect rest. periods: number of
-    periods of the drive in the record, more than one where the steps of a method keep the motion from
-    repeating so soon.
+    tau [panels, nodes] increases. x, v, friction [panels, nodes] are complex, x1 + i x2. friction is the
+    resisting friction force over the mean normal load, positive if slip is positive; it is NaN in a component
+    that is unknown. stick [panels] marks pieces at rest on the belt; it is None if the method cannot detect
+    rest.
+
+    periods: number of periods in the record, by which sums and counts over the record are divided. It is more
+    than one if steps of a method keep the motion from repeating so soon, or if it never repeats (long mean).
     """
 
     tau: Floats
@@ -32,7 +34,10 @@ class Orbit:
 
 @dataclass(frozen=True)
 class Orbits:
-    """Orbits one after another, all panels in one array each; those of orbit k end before panel ends[k]."""
+    """Orbits stored one after another: each quantity is one array [panels, ...].
+
+    Orbit k has the panels ends[k-1] to ends[k] - 1.
+    """
 
     tau: Floats
     x: NDArray[np.complex128]

@@ -1,4 +1,4 @@
-"""What Python code gives for a run, a curve or a steady state: checked, each mistake with what is allowed."""
+"""Check arguments of ``fl.run``, ``fl.curve``, ``fl.steady_state`` ...; errors name what is allowed."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from frictionlab.values.notes import closest, did_you_mean, python_text, unknown
 from frictionlab.values.quantities import Floats, rebuilt
 
 Existing = Literal["reuse", "replace"]
-"""What becomes of results that are in the folder of a run already."""
+"""Ways to treat results that are already in the folder of a run."""
 
 
 def given_scene(scene: Scene) -> Scene:
-    """The scene, its values checked. Raises TypeError, WrongValues."""
+    """Return the scene, its values checked. Raises TypeError, WrongValues."""
     if isinstance(scene, Scene):
         return scene.checked()
     hint = "did you mean fl.Scene(**scene)?" if isinstance(scene, Mapping) else ""
@@ -37,7 +37,7 @@ def given_scene(scene: Scene) -> Scene:
 
 
 def given_law(law: FrictionLaw) -> FrictionLaw:
-    """The law, its values checked. Raises TypeError, WrongValues."""
+    """Return the law, its values checked. Raises TypeError, WrongValues."""
     if isinstance(law, FrictionLaw):
         return rebuilt(law)
     kind: Any = law
@@ -48,7 +48,7 @@ def given_law(law: FrictionLaw) -> FrictionLaw:
 
 
 def given_method(method: str | Method) -> Method:
-    """The method, its values checked. Raises TypeError, ValueError for an unknown name."""
+    """Return the method, its values checked. Raises TypeError, or ValueError for an unknown name."""
     if isinstance(method, Method):
         return rebuilt(method)
     if not isinstance(method, str):
@@ -62,7 +62,7 @@ def given_method(method: str | Method) -> Method:
 
 
 def given_tolerance(tolerance: float, name: str = "tolerance") -> float:
-    """The tolerance of this name. Raises ValueError."""
+    """Return the tolerance as a float; ``name`` is used in the error. Raises ValueError."""
     number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
     if not (number and isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(_refusal(f"{name} must be a positive number", tolerance))
@@ -70,7 +70,7 @@ def given_tolerance(tolerance: float, name: str = "tolerance") -> float:
 
 
 def given_speeds(belt_speed: ArrayLike) -> Floats:
-    """Belt speeds as an array. Raises ValueError."""
+    """Return belt speeds as an array. Raises ValueError."""
     given = np.atleast_1d(np.asarray(belt_speed, dtype=object))
     if given.ndim != 1 or isinstance(belt_speed, str | Mapping):
         hint = "fl.compare and fl.sweep take ranges" if isinstance(belt_speed, Mapping) else ""
@@ -85,7 +85,7 @@ def given_speeds(belt_speed: ArrayLike) -> Floats:
 
 
 def given_columns(names: Sequence[str] | str, scene: Scene) -> tuple[str, ...]:
-    """The names, each of a result column of such a scene or of a group of them. Raises ValueError."""
+    """Return these names of result columns of the scene or of groups, each once. Raises ValueError."""
     known = [*RESULTS, *(SI if scene.dimensional is not None else ()), *GROUPS]
     if names == ALL:
         return (ALL,)
@@ -103,7 +103,10 @@ def given_study(
     overrides: Sequence[str],
     columns: Sequence[str] | str | None,
 ) -> Study:
-    """The study of a file, a mapping or a record, its values checked. Raises StudyError, TypeError, ValueError."""
+    """Return the study of a file, a mapping or a record, its values checked.
+
+    Raises StudyError, TypeError, ValueError.
+    """
     if isinstance(overrides, str) or not all(isinstance(each, str) for each in overrides):
         raise TypeError(_refusal("overrides must be a list such as ['scene.belt_speed=5']", overrides))
     if isinstance(study, Study):
@@ -118,7 +121,7 @@ def given_study(
 
 
 def _checked_study(study: Study) -> Study:
-    """The study, where neither ``replace`` nor ``model_copy`` put in what a study file would not take."""
+    """Check a study record again, since ``replace`` or ``model_copy`` may have changed it; return it."""
     for choice in study.laws:
         choice.law_class(**choice.parameters)
     given_columns(study.columns or (), study.scene)
@@ -126,7 +129,7 @@ def _checked_study(study: Study) -> Study:
 
 
 def check_ways(existing: Existing, executor: Executor | Workforce | None) -> None:
-    """Check how to go about a run. Raises ValueError, TypeError."""
+    """Check ``existing`` and ``executor``. Raises ValueError, TypeError."""
     if existing not in get_args(Existing):
         allowed = " or ".join(map(repr, get_args(Existing)))
         raise ValueError(_refusal(f"existing must be {allowed}", existing))
@@ -134,7 +137,7 @@ def check_ways(existing: Existing, executor: Executor | Workforce | None) -> Non
 
 
 def check_executor(executor: Executor | Workforce | None) -> None:
-    """Raises TypeError."""
+    """Raise TypeError if ``executor`` is neither None, an Executor nor a Workforce."""
     if executor is not None and not isinstance(executor, Executor | Workforce):
         raise TypeError(_refusal("executor must be a concurrent.futures.Executor", executor))
 
@@ -148,7 +151,7 @@ def _with(what: str, hint: str) -> str:
 
 
 def _call(kind: Any) -> str:
-    """How to make a record of this class: its name and the values it requires."""
+    """Return the call that makes a record of this class: its name and the values that it requires."""
     fields = getattr(kind, "model_fields", {})
     required = (f"{name}=..." for name, field in fields.items() if field.is_required())
     return f"{kind.__name__}({', '.join(required)})"

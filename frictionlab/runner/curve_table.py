@@ -1,4 +1,4 @@
-"""The table of curves: one row per set of inputs other than belt speed, with the shape of its mean friction."""
+"""Table of curves: one row per set of inputs other than belt speed, with the shape of its mean friction."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from frictionlab.values.quantities import Floats
 NOT_ASKED_FOR = f"the table lacks columns that curves are read from: {', '.join(OF_SHAPE)}"
 CURVE_TEXT = frozenset({"shape", "shape_by_initial", "reason"})
 WHERE_NOT_UNIQUE = "not_unique_from", "not_unique_to"
-"""Columns that are there where some curve has them."""
+"""Columns left out of the table if no curve has a value in them."""
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
 
 
@@ -44,11 +44,11 @@ def curve_table(
     laws: registry.Laws = registry.INSTALLED_LAWS,
     reduced: Container[str] = (),
 ) -> pd.DataFrame:
-    """One row per curve of a result table, in its order; no rows if no curve has two belt speeds.
+    """Return one row per curve of a result table, in its order; no rows if no curve has two belt speeds.
 
-    Points without a number are left out. A measure that cannot be determined is empty, with the reason. reduced:
-    labels of methods that solve a simpler model; measures are those of its own curve, whose distance to the full
-    answers is told beside.
+    Points without a number are left out. A measure that cannot be determined is empty, with the reason.
+    reduced: labels of methods that solve a simpler model. Measures of such a method are read from its own
+    curve; ``model_distance`` is the largest distance of that curve to the full answers.
     """
     keys = curve_inputs(table.columns)
     groups = table.groupby(keys, sort=False, dropna=False).indices if len(table) else {}
@@ -77,7 +77,10 @@ def curve_table(
 
 
 def _speed_scales(table: pd.DataFrame, places: Sequence[Floats]) -> dict[str, Floats]:
-    """Of each curve a belt speed in m/s over the nondimensional one; none where scenes are not given in SI units."""
+    """Return the velocity unit of each curve: its largest belt speed in m/s over the nondimensional one.
+
+    Empty if scenes are not given in SI units.
+    """
     if BELT_SPEEDS[1] not in table:
         return {}
     plain, given = (table[name].to_numpy(dtype=float) for name in BELT_SPEEDS)
@@ -87,7 +90,7 @@ def _speed_scales(table: pd.DataFrame, places: Sequence[Floats]) -> dict[str, Fl
 
 
 def curve_inputs(columns: Iterable[str]) -> list[str]:
-    """The inputs that are equal along a curve."""
+    """Return the names of the inputs that are equal along a curve."""
     return [
         name
         for name in columns
@@ -107,7 +110,7 @@ def _rows(numbers: Floats) -> Rows:
 
 
 def loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
-    """The loads on the body, from the inputs of a curve."""
+    """Return the loads on the body, from the inputs of a curve."""
 
     def value(name: str) -> float:
         found = given.get(name)
@@ -138,7 +141,7 @@ def loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
 
 
 def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:
-    """Why the limit of friction at vanishing belt speed is not known; '' where it is."""
+    """Return why the limit of friction at vanishing belt speed is not known; '' if it is known."""
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     if law is not None and "oddness" in law.expected_failures:
         return ONE_SIDED
@@ -150,7 +153,10 @@ def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:
 def _shakedown(
     law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool
 ) -> Shakedown | None:
-    """The shakedown of the bristles of a curve's law; None for a planar form without memory of direction."""
+    """Return the shakedown of the bristles of a curve's law.
+
+    Return None for ``rotated`` bristles in the plane, which do not remember a direction.
+    """
     in_a_plane = value("scene.transverse.natural_frequency") or value(
         "scene.transverse_slip.velocity_amplitude"
     )
@@ -160,14 +166,17 @@ def _shakedown(
 
 
 def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | None:
-    """That of a row; None if it is no known bristle law."""
+    """Return the law of a row; None if it is no known bristle law."""
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     known = law is not None and law.memory_kind == "bristle"
     return cast("BristleLaw", _law(given, laws)) if known else None
 
 
 def _law(given: Mapping[str, Any], laws: registry.Laws) -> FrictionLaw | None:
-    """The law of a row as methods received it, rebuilt from its inputs; None if it is no known law."""
+    """Rebuild the law of a row from its inputs, per unit normal load as methods use it.
+
+    Return None if it is no known law.
+    """
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     if law is None:
         return None
@@ -179,7 +188,11 @@ def _law(given: Mapping[str, Any], laws: registry.Laws) -> FrictionLaw | None:
 
 
 def measures(rows: Rows, loads: Loads, of_model: bool, even: bool = False) -> dict[str, Any]:
-    """The measures of a curve that can be determined, and why others cannot. even: as ``shape_of`` has it."""
+    """Return the measures of a curve that can be determined, and why others cannot.
+
+    of_model: True for the curve of a reduced model. even: True if points are evenly spaced in the angle of
+    the interpolant.
+    """
     found: dict[str, Any] = {}
     if of_model and rows.error.size:
         found["model_distance"] = float(rows.error.max())
@@ -200,7 +213,10 @@ def measures(rows: Rows, loads: Loads, of_model: bool, even: bool = False) -> di
 
 
 def _not_unique(belt_speeds: Floats) -> dict[str, float]:
-    """Between which belt speeds the points lie that are not unique, these."""
+    """Return the lowest and the highest of these belt speeds, at which the steady state is not unique.
+
+    Empty if there are none.
+    """
     return (
         dict(zip(WHERE_NOT_UNIQUE, (belt_speeds.min(), belt_speeds.max()), strict=True))
         if belt_speeds.size

@@ -1,4 +1,4 @@
-"""A run in a few lines of text: one per curve, then what was expected, then where the table is."""
+"""Summary of a run in a few lines of text: a line per curve, verdicts on expectations, path of the table."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
 
 def pattern(sentence: Any) -> str:
-    """A sentence without its numbers; nothing for what is no sentence."""
+    """Replace each number of a text by #; return '' for anything but a text."""
     return _NUMBER.sub("#", sentence) if isinstance(sentence, str) else ""
 
 
 def each_once(column: pd.Series, told: Callable[[Any], str]) -> pd.Series:
-    """What is told of every cell, found once for each different one."""
+    """Apply ``told`` to each cell; it is called once per distinct value."""
     places, different = pd.factorize(column, use_na_sentinel=False)
     return pd.Series(np.array([told(each) for each in different], dtype=object)[places], column.index)
 
 
 def alike(sentences: Iterable[str]) -> str:
-    """Sentences that differ in their numbers at most as one: the least and the greatest of each number."""
+    """Merge sentences that differ only in numbers: each number that differs becomes 'least ... greatest'."""
     first, *others = dict.fromkeys(sentences)
     values = zip(*(_NUMBER.findall(each) for each in (first, *others)), strict=False)
     ends = iter([" ... ".join(dict.fromkeys((min(one, key=float), max(one, key=float)))) for one in values])
@@ -46,11 +46,11 @@ def alike(sentences: Iterable[str]) -> str:
 MOST_REASONS = 10
 WORDS_OF_MODELS = "words of models in full: frictionlab columns"
 CURVES_TOLD = 20
-"""Curves of a run that are told line by line."""
+"""Largest number of curves that a summary lists, one line each."""
 
 
 def summary(run: Run) -> str:
-    """What a run found, for reading: curves, reasons, verdicts."""
+    """Write the results of a run as text: curves, models, reasons, verdicts, path of the table."""
     table = in_shown_units(whole(run.to_show), run.study.units)
     told = ", ".join(f"{count} {status}" for status, count in run.counts.items())
     parts = [
@@ -70,7 +70,10 @@ _HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "
 
 
 def _curve_lines(table: pd.DataFrame) -> list[str]:
-    """One line per curve: everything equal but belt speed; of many the first ones."""
+    """Write one line per curve, for the first ``CURVES_TOLD`` curves.
+
+    Points of a curve differ only in belt speed.
+    """
     keys = ["law", "method", *swept_inputs(table)]
     groups = table.groupby(keys, sort=False, dropna=False)
     models = _models(table)
@@ -85,7 +88,10 @@ def _curve_lines(table: pd.DataFrame) -> list[str]:
 
 
 def _models(table: pd.DataFrame) -> dict[str, int]:
-    """A number for each model, whose sentence is too long for a line per curve; equal models share a number."""
+    """Return a number for each model, because its sentence is too long for the line of a curve.
+
+    Models whose sentences differ only in numbers share one.
+    """
     found = table["model"].dropna().unique()
     numbers = {form: number for number, form in enumerate(dict.fromkeys(map(pattern, found)), 1)}
     return {model: numbers[pattern(model)] for model in found}
@@ -115,9 +121,9 @@ def mean_span(
     between: str = PLUS_MINUS,
     unit: str = "",
 ) -> str:
-    """The least and the greatest mean friction of rows, each with its error; '' where none has a number.
+    """Write the least and the greatest mean friction of rows, each with its error; '' if none has a number.
 
-    unit: the end of the columns' names, ``_N`` for a force.
+    unit: end of the names of the columns, ``_N`` for a force.
     """
     means, errors = (np.asarray(rows[f"{name}{unit}"], dtype=float) for name in ("mean_friction", "error"))
     if np.isnan(means).all():
@@ -128,25 +134,28 @@ def mean_span(
 
 
 def _setting(name: str, value: Any) -> str:
-    """An input with its value, without what all inputs of a scene begin with."""
+    """Write an input and its value, without the prefixes ``scene.`` and ``dimensional.``."""
     brief, _, unit = name.removeprefix("scene.").removeprefix("dimensional.").partition(SHOWN_IN)
     return f"{without_unit(brief)} {in_words(value)} {unit}" if unit else f"{brief} {in_words(value)}"
 
 
 def statuses(rows: RowArrays | pd.DataFrame) -> str:
-    """How many rows have each status, in words."""
+    """Count the rows of each status, in words."""
     return ", ".join(f"{count} {status}" for status, count in Counter(rows["status"]).most_common())
 
 
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows of words as lines with aligned columns; columns without a word below their head are left out."""
+    """Write rows of words as lines with aligned columns; columns empty below their head are left out."""
     kept = [column for column in zip(*rows, strict=True) if any(column[1:]) or len(rows) == 1]
     padded = [[cell.ljust(max(map(len, column))) for cell in column] for column in kept]
     return ["  ".join(line).rstrip() for line in zip(*padded, strict=True)]
 
 
 def _reasons(table: pd.DataFrame) -> list[str]:
-    """Why points that are not ok are not: law by law those whose reasons begin alike, most points first."""
+    """List the reasons of points that are not ok, the largest groups of points first.
+
+    Points are grouped by law (and method, if there are several), status and the first words of the reason.
+    """
     rest, by_methods = table[table["status"] != "ok"], table["method"].nunique() > 1
     whose = rest["law"] + (" by " + rest["method"] if by_methods else "")
     begins = each_once(rest["reason"], lambda reason: pattern(reason).partition(":")[0])
@@ -160,7 +169,7 @@ def _reasons(table: pd.DataFrame) -> list[str]:
 
 
 def _speeds(rows: pd.DataFrame) -> str:
-    """The belt speeds of rows."""
+    """Write the range of belt speeds of rows."""
     name = belt_speed(rows)
     _, _, unit = name.partition(SHOWN_IN)
     ends = dict.fromkeys(f"{end:.4g}" for end in (rows[name].min(), rows[name].max()))
@@ -168,14 +177,14 @@ def _speeds(rows: pd.DataFrame) -> str:
 
 
 def _first(reasons: pd.Series) -> str:
-    """The commonest of reasons that begin alike, and how many others there are."""
+    """Return the most frequent reason of a group and the number of its other reasons."""
     counts = reasons.value_counts()
     others = f" ({counted(len(counts) - 1, 'other')} in the table)" if len(counts) > 1 else ""
     return f"{next(iter(counts.index), '')}{others}"
 
 
 def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
-    """How many expectations held, and each that did not in full."""
+    """Count the expectations that passed and failed; write out each failed one."""
     failed = [verdict for verdict in verdicts if not verdict.passed]
     counts = {"passed": len(verdicts) - len(failed), "FAILED": len(failed)}
     told = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
@@ -183,5 +192,5 @@ def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
 
 
 def failed_lines(verdicts: Sequence[Verdict]) -> list[str]:
-    """A line for each expectation that did not hold."""
+    """Write a line for each expectation that failed."""
     return [f"expect FAILED: {verdict.sentence}" for verdict in verdicts if not verdict.passed]

@@ -1,7 +1,7 @@
-"""Parts of a scene: loads, the motion across the belt, prescribed slips, vibrations and a start.
+"""Parts of a scene: loads, motion across the belt, prescribed slips, vibrations and a start.
 
-A number with a dimension says so beside its limits: its key and its value in SI units follow from that
-(``dimensional.py``).
+The annotation of a field states its limits and its dimension. ``dimensional.py`` derives the key and the
+value in SI units from the dimension.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ from frictionlab.values.quantities import Finite, NonNegative, Positive, Record
 class ScenePart(Record):
     """Part of a scene.
 
-    ``alternatives`` names fields of which exactly one is given; it is empty where there are none.
+    ``alternatives`` names fields of which exactly one is given; it is empty if there are none.
     """
 
     alternatives: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def key(cls, name: str) -> str:
-        """Return the key under which the part has the value of a nondimensional name."""
+        """Return the name in this class of a nondimensional field; in SI units it ends in the unit."""
         return name
 
     @model_validator(mode="after")
@@ -62,7 +62,7 @@ class _Force(ScenePart):
     amplitude : float, >= 0, optional
         Amplitude of the force [K_1 L]. Exactly one is given: it or ``unbalance``.
     phase : float, default 0
-        Phase of the force, which is the waveform at frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform [degrees].
     waveform : str or dict, optional
         Waveform: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
@@ -79,7 +79,7 @@ class _Force(ScenePart):
     waveform: Waveform | None = None
 
     def size(self, frequency: float) -> float:
-        """Compute the factor of the waveform.
+        """Return the amplitude by which the waveform is multiplied.
 
         Parameters
         ----------
@@ -121,12 +121,12 @@ class Drive(_Force):
     amplitude : float, >= 0, optional
         Amplitude of the force [K_1 L]. Exactly one is given: it or ``unbalance``.
     phase : float, default 0
-        Phase of the force, which is the waveform at frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform [degrees].
     waveform : str or dict, optional
         Waveform: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
     frequency : float, > 0
-        Frequency of the drive [omega_1]; all else that vibrates has it or a ratio of it.
+        Frequency of the drive [omega_1]; other vibrations have the same frequency or a multiple p/q of it.
     direction : float, optional
         Direction of the force, from x1 towards x2, in scenes with ``transverse`` [degrees]; along x1 if left
         out.
@@ -149,7 +149,7 @@ class Drive(_Force):
 
 
 class Load(_Force):
-    """Force along x2, across the belt, beside a drive along x1.
+    """Force along x2, across the belt, in addition to a drive along x1.
 
     Parameters
     ----------
@@ -158,7 +158,8 @@ class Load(_Force):
     amplitude : float, >= 0, optional
         Amplitude of the force [K_1 L]. Exactly one is given: it or ``unbalance``.
     phase : float, default 0
-        Phase of the force, which is the waveform at its frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform, with the frequency of the force
+        [degrees].
     waveform : str or dict, optional
         Waveform: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
@@ -210,16 +211,16 @@ Order = Annotated[Positive, Field(le=1.0)]
 
 
 class Relaxation(ScenePart):
-    """Spring in series with a dashpot, beside spring and dashpot of the body: the standard linear solid.
+    """Spring in series with a dashpot, parallel to spring and dashpot of the body: the standard linear solid.
 
     It adds the force stiffness*y, y' = x1' - y/time.
 
     Parameters
     ----------
     stiffness : float, > 0
-        Stiffness of the spring, felt by fast motion [K_1].
+        Stiffness of the spring, which adds to that of the body in fast motion [K_1].
     time : float, > 0
-        Time in which the force of the spring relaxes [1/omega_1].
+        Relaxation time of the force of the spring [1/omega_1].
     order : float, > 0 and <= 1, default 1
         Order of the derivative of y [-]; below 1 this is the fractional Zener model.
 
@@ -236,15 +237,15 @@ class Relaxation(ScenePart):
 
 
 class Fractional(ScenePart):
-    """Force coefficient*D^order x1 beside spring and dashpot of the body.
+    """Force coefficient*D^order x1, added to those of spring and dashpot of the body.
 
     It lies between the force of a spring (order 0) and that of a dashpot (order 1).
 
     Parameters
     ----------
     coefficient : float, > 0
-        Coefficient of the derivative [K_1/omega_1^order]; the derivative of a sine is (i omega)^order times
-        it (Weyl).
+        Coefficient of the derivative [K_1/omega_1^order]; x1 = exp(i omega tau) gives the force
+        coefficient*(i omega)^order*x1 (Weyl).
     order : float, > 0 and <= 1
         Order of the derivative [-].
 
@@ -294,7 +295,7 @@ class Receptance(ScenePart):
     receptance_unit : float, > 0, optional
         Unit of x1 over force in the file [1/K_1]; 1 if left out.
     digest : str, default ""
-        Digest of the contents of the file; found if left out. A file with other contents is then refused.
+        Digest of the contents of the file; computed if left out. A file with other contents is refused.
 
     Examples
     --------
@@ -338,7 +339,9 @@ class Receptance(ScenePart):
 
 
 class Body(ScenePart):
-    """Nonlinear and viscoelastic parts of a body, along x1, beside spring 1 and damping_ratio.
+    """Nonlinear and viscoelastic forces on the body along x1, added to those of its spring and its dashpot.
+
+    Nondimensional, the spring has stiffness 1 and the dashpot is given by damping_ratio.
 
     Parameters
     ----------
@@ -372,7 +375,7 @@ class Body(ScenePart):
     receptance: Receptance | None = None
 
     def bends(self, damping_ratio: float) -> Any:
-        """Compute the coefficients of the nonlinear force beside spring and dashpot.
+        """Compute the coefficients of the nonlinear force that adds to spring and dashpot.
 
         Parameters
         ----------
@@ -395,7 +398,7 @@ class Body(ScenePart):
 
     @property
     def terms(self) -> list[str]:
-        """Keys that add something."""
+        """Keys of ``body`` whose value is neither zero nor empty."""
         return [name for name in type(self).model_fields if getattr(self, name)]
 
 
@@ -405,13 +408,13 @@ class _Vibration(ScenePart):
     Parameters
     ----------
     velocity_amplitude : float, >= 0
-        Amplitude of the velocity, which the waveform is multiplied by [omega_1 L].
+        Amplitude of the velocity, by which the waveform is multiplied [omega_1 L].
     """
 
     velocity_amplitude: Annotated[NonNegative, VELOCITY]
 
     def size(self, _frequency: float) -> float:
-        """Return the factor of the waveform, whatever the frequency.
+        """Return the amplitude by which the waveform is multiplied, the same at all frequencies.
 
         Returns
         -------
@@ -427,11 +430,11 @@ class Slip(_Vibration):
     Parameters
     ----------
     velocity_amplitude : float, >= 0
-        Amplitude of the slip velocity beside that of the belt [omega_1 L].
+        Amplitude of the oscillation that is added to the mean slip velocity -belt_speed [omega_1 L].
     frequency : float, > 0
         Frequency of the oscillation [omega_1].
     phase : float, default 0
-        Phase of the slip velocity, which is the waveform at frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform [degrees].
     waveform : str or dict, optional
         Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order,
         amplitude, phase}, ...]}; sine if left out.
@@ -460,10 +463,10 @@ class TransverseSlip(_Vibration):
     velocity_amplitude : float, >= 0
         Amplitude of the slip velocity along x2 [omega_1 L].
     phase : float, default 0
-        Phase of the slip velocity, which is the waveform at frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform [degrees].
     frequency : float, > 0, optional
-        Frequency of the oscillation [omega_1]; given only if ``slip`` is left out, whose frequency else holds
-        for both.
+        Frequency of the oscillation [omega_1]; given only without ``slip``. With ``slip`` both oscillate at
+        the frequency of ``slip``.
     waveform : str or dict, optional
         Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order,
         amplitude, phase}, ...]}; sine if left out.
@@ -482,17 +485,18 @@ class TransverseSlip(_Vibration):
 
 
 class BeltVibration(_Vibration):
-    """Vibration of the belt, beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
+    """Vibration of the belt, added to belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
 
-    A slider pulled through its spring over a vibrating plate, in any direction, is this scene
+    This scene also describes a slider pulled by a spring over a plate that vibrates in any direction
     (Gutowski & Leus, 2020).
 
     Parameters
     ----------
     velocity_amplitude : float, >= 0
-        Amplitude of the belt's velocity beside belt_speed [omega_1 L].
+        Amplitude of the oscillation that is added to belt_speed [omega_1 L].
     phase : float, default 0
-        Phase of the vibration of the belt, which is the waveform at its frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform, with the frequency of the vibration
+        [degrees].
     waveform : str or dict, default "sine"
         Waveform of the velocity: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude,
         phase}, ...]}.
@@ -529,7 +533,8 @@ class NormalLoadVariation(ScenePart):
     amplitude : float, >= 0
         Amplitude of the variation as a fraction of the normal load [-].
     phase : float, default 0
-        Phase of the variation, which is the waveform at its frequency*tau + phase [degrees].
+        Phase added to frequency*tau in the argument of the waveform, with the frequency of the variation
+        [degrees].
     waveform : str or dict, default "sine"
         Waveform of the variation: "sine", "square", "triangle", "sawtooth" or {harmonics: [{order, amplitude,
         phase}, ...]}.
@@ -538,7 +543,7 @@ class NormalLoadVariation(ScenePart):
     contact : {"per_load", "constant"}, default "per_load"
         Stiffness and damping of bristles. ``per_load``: they follow the load, as in laws per unit normal load
         (Canudas de Wit & Tsiotras, 1999). ``constant``: they stay those of the mean load, and the load
-        changes the limit of friction alone (a spring in series with Coulomb friction, as in Teidelt,
+        changes only the limit of friction (a spring in series with Coulomb friction, as in Teidelt,
         Starcevic & Popov, 2012, Popov, Popov & Popov, 2017, and Mao et al., 2017).
     frequency : float, > 0, optional
         Frequency of the variation [omega_1]; given only if no other part of the scene has one.
@@ -560,7 +565,7 @@ class NormalLoadVariation(ScenePart):
     frequency: Annotated[Positive, FREQUENCY] | None = None
 
     def size(self, _frequency: float) -> float:
-        """Return the factor of the waveform, whatever the frequency.
+        """Return the amplitude by which the waveform is multiplied, the same at all frequencies.
 
         Returns
         -------

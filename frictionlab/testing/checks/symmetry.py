@@ -1,4 +1,4 @@
-"""Checks of symmetry: which way a law looks must not matter, nor the units it is told in."""
+"""Checks that friction does not depend on the choice of axes, directions and units."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from frictionlab.testing.example import Given, law_check
 from frictionlab.testing.strategies import directions, sizes
 
 BEYOND_LIMIT = 1.5
-"""Times what a memory can hold: it yields wholly, not only just."""
+"""Factor by which a test deflection exceeds that of steady sliding, so that the contact surely yields."""
 
 
 @law_check(
     change="let `rate` and `friction` change sign with v and the deflections; `abs(v)` alone has no direction",
 )
 def oddness(one: Given) -> None:
-    """Slip and deflections turned round turn friction round, and change it in nothing else."""
+    """Reverse slip and deflections: friction and rates of deflections must change sign, nothing else."""
     law = one.law(lambda law: getattr(law, "planar", "") != "rotated")
     v = one.slip()
     back = -1.0 if has_direction(law) else 1.0
@@ -32,7 +32,7 @@ def oddness(one: Given) -> None:
     seldom="no parameters drawn have a form in the plane that turns with the slip",
 )
 def rotation(one: Given) -> None:
-    """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
+    """Rotate slip and memory in the plane: friction must rotate by the same angle (not in per-axis forms)."""
     law = one.planar_law(lambda law: getattr(law, "planar", "vectorial") != "per-axis")
     v = one.planar_slip()
     turn = one.draw("turn", directions)
@@ -54,7 +54,7 @@ def rotation(one: Given) -> None:
     seldom="no parameters drawn have a form in the plane",
 )
 def reflection(one: Given) -> None:
-    """In the plane everything mirrored in the belt's line gives friction mirrored in it."""
+    """Mirror slip and memory about x1: friction must be mirrored."""
     law = one.planar_law()
     v = one.planar_slip()
     memory = one.memory(law, planar=True)
@@ -69,7 +69,7 @@ def reflection(one: Given) -> None:
     seldom="no parameters drawn have a form in the plane",
 )
 def straight_planar_slide(one: Given) -> None:
-    """Slip along a straight line in the plane is slip on the line, with nothing across."""
+    """Slide along x1 in the plane: friction and rates must equal those on the line, with zero across."""
     law = one.planar_law()
     v = one.slip()
     v = abs(v) if getattr(law, "planar", "") == "rotated" else v
@@ -85,7 +85,7 @@ def straight_planar_slide(one: Given) -> None:
     change="annotate parameters with a dimension as fl.Speed, fl.PerSpeed, fl.Length or fl.Stiffness",
 )
 def unit_scaling(one: Given) -> None:
-    """In other units of length and time friction is the same, and memory moves at the same pace.
+    """Change units of length and time: friction must stay the same, rates of memory scale with the units.
 
     Every parameter is converted by the dimension in its annotation.
     """
@@ -111,7 +111,10 @@ def unit_scaling(one: Given) -> None:
 def _same_pace(
     one: Given, here: tuple[MemoryLaw, float, float], there: tuple[MemoryLaw, float, float], time: float
 ) -> None:
-    """Scalars have units of their own: told by the speed of steady sliding that brings them, they need none."""
+    """Require that scalars change at the same rate in other units.
+
+    Units of scalars are unknown here: compared instead is the steady-sliding speed that corresponds to each.
+    """
     law, v, before = here
     paces, others, quicker = _paces(law, v, before), _paces(*there), _paces(law, 2.0 * v, before)
     for k, (pace, other, size) in enumerate(zip(paces, others, quicker, strict=True)):
@@ -121,7 +124,10 @@ def _same_pace(
 
 
 def _paces(law: MemoryLaw, v: float, before: float) -> list[float]:
-    """How quickly the speed that the memory is steady at changes, relative to itself [1/scene time]."""
+    """Return d ln(s)/dtau of each memory [1/scene time].
+
+    s is the sliding speed at which the present memory would be steady.
+    """
     step = 1e-5
     steady = [law.steady(before, k) for k in range(law.count())]
     slopes = [

@@ -14,16 +14,17 @@ from frictionlab.values.quantities import EPSILON, Floats
 
 PieceNumbers = NDArray[np.int64]
 _ROUNDING = 8.0 * EPSILON
-"""Share of its size below which the value of such a function is rounding."""
+"""Relative size below which a value of a piecewise function counts as rounding."""
 _FINEST = EPSILON
-"""Half an interval, as share of the period, below which it is not cut: at the period's end it has no
-middle."""
+"""Smallest half-length of an interval that is cut, over the period.
+
+A shorter one has no floating-point number between its ends near the end of the period."""
 
 
 class FreeMotion(NamedTuple):
     """Free motions of an oscillator x'' + damping x' + stiffness x = 0, one on each piece.
 
-    x, v: at the beginnings of the pieces. order: derivative of x that the record stands for.
+    x, v: at the beginnings of the pieces. order: 0 if the function is x, 1 if it is x', and so on.
     """
 
     damping: float
@@ -44,7 +45,10 @@ class FreeMotion(NamedTuple):
         return found[self.order], found[self.order + 1]
 
     def curvature(self) -> Floats:
-        """Return a bound on the second derivative of the function, on each piece: the energy never grows."""
+        """Bound the second derivative of the function on each piece.
+
+        The bound is valid because the energy of a free motion never grows.
+        """
         swing = np.sqrt(self.stiffness * self.x**2 + self.v**2)
         return swing * (math.sqrt(self.stiffness) + self.damping) ** (self.order + 1)
 
@@ -70,7 +74,7 @@ def oscillation(damping: float, stiffness: float, since: Floats) -> tuple[Floats
 class Piecewise(NamedTuple):
     """Sum of waves, a straight line on each piece, and a free motion.
 
-    edges [n + 1]: from 0 to the period. middle, slope [n]: of the lines, with their values half way.
+    edges [n + 1]: from 0 to the period. middle, slope [n]: value at mid-piece and slope of the straight line.
     """
 
     edges: Floats
@@ -102,12 +106,12 @@ class Piecewise(NamedTuple):
         return value, slope
 
     def curvature(self) -> Floats:
-        """Return a bound on the second derivative on each piece."""
+        """Bound the second derivative on each piece."""
         bound = np.full(len(self.middle), sum(each.frequency**2 * abs(each.phasor) for each in self.waves))
         return bound if self.free is None else bound + self.free.curvature()
 
     def size(self) -> float:
-        """Return a bound on the magnitude of the function, the scale of rounding."""
+        """Bound the magnitude of the function, the scale of rounding."""
         half = 0.5 * np.diff(self.edges)
         bound = np.abs(self.middle) + np.abs(self.slope) * half
         if self.free is not None:
@@ -117,7 +121,10 @@ class Piecewise(NamedTuple):
         return float(bound.max()) + sum(abs(each.phasor) for each in self.waves)
 
     def integral(self, start: Floats, stop: Floats, k: PieceNumbers) -> Floats:
-        """Return the integral of waves and lines between two times on the pieces k."""
+        """Integrate waves and lines between two times on the pieces k.
+
+        ``free`` must be None: it is not integrated.
+        """
         middle, length = 0.5 * (start + stop), stop - start
         total = length * (
             self.middle[k] + self.slope[k] * (middle - 0.5 * (self.edges[k] + self.edges[k + 1]))
@@ -129,7 +136,7 @@ class Piecewise(NamedTuple):
         return np.asarray(total)
 
     def minus(self, level: float) -> Piecewise:
-        """Return the function less a constant."""
+        """Return the function minus a constant."""
         return self._replace(middle=self.middle - level)
 
     def negative(self) -> Piecewise:
@@ -162,7 +169,7 @@ class Piecewise(NamedTuple):
         return still & (np.abs(self.middle) <= _ROUNDING * self.size()) if still.any() else still
 
     def crossings(self) -> Crossings:
-        """Return the places where the function crosses zero.
+        """Return the zeros of the function.
 
         Intervals that cannot hold a zero are dropped, the others cut in two.
         """
@@ -186,7 +193,7 @@ class Piecewise(NamedTuple):
     def _crossings_of_a_sine(self) -> Crossings:
         """Return the zeros of a constant plus one sine, in closed form.
 
-        Near the turning points of the sine a zero found from rounded values would be half as exact.
+        Rounded values near a turning point of the sine would give a zero with half of the digits.
         """
         (frequency, phasor), level = self.waves[0], float(self.middle[0])
         size, far = abs(phasor), abs(level)
@@ -210,7 +217,7 @@ class Piecewise(NamedTuple):
             value, slope = self.at(tau, k)
             above = (value > 0.0) == rises
             low, high = np.where(above, low, tau), np.where(above, tau, high)
-            newton = tau - value / slope  # not zero: the function is monotone
+            newton = tau - value / slope  # slope is not zero: the function is monotone
             following = np.where((newton >= low) & (newton <= high), newton, 0.5 * (low + high))
             moved, tau = np.abs(following - tau), following
             if not np.any(moved > EPSILON * self.period):
@@ -220,7 +227,7 @@ class Piecewise(NamedTuple):
 
 
 class Crossings(NamedTuple):
-    """Zeros of a function, and the error of each because the values of the function are rounded."""
+    """Zeros of a function, and the error of each due to rounded values of the function."""
 
     tau: Floats
     unsure: Floats
@@ -233,7 +240,7 @@ class Crossings(NamedTuple):
 def _halves(
     start: Floats, stop: Floats, k: PieceNumbers, which: NDArray[np.bool_]
 ) -> tuple[Floats, Floats, PieceNumbers]:
-    """Return both halves of each of these intervals."""
+    """Return both halves of each marked interval."""
     low, high, k = start[which], stop[which], k[which]
     middle = 0.5 * (low + high)
     return np.concatenate([low, middle]), np.concatenate([middle, high]), np.concatenate([k, k])

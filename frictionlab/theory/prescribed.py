@@ -1,8 +1,8 @@
 """Mean Coulomb friction under prescribed slip, and that of compliant contacts with soft or stiff bristles.
 
-The slip is the sum of the belt's and a sine of displacement amplitude X. ratio is belt speed over velocity
-amplitude, presliding is the presliding length over X. A mean is relative to the friction coefficient of
-steady sliding. ``reversal_kick`` is the effect of stiff bristles on a body after a reversal.
+Slip velocity is -belt_speed plus that of a sine of displacement amplitude X. ratio is belt speed over
+velocity amplitude, presliding is the presliding length over X. A mean is relative to the friction coefficient
+of steady sliding. ``reversal_kick`` is the effect of stiff bristles on a body after a reversal.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Fl
 
     Sine: (2/pi) arcsin(ratio). Triangle and sawtooth, whose velocity is spread evenly: ratio. Parabola, the
     integral of a triangle: 1 - sqrt(1 - ratio). Square: 0, and NaN at ratio 1, where slip rests for half of
-    the period. For any velocity oscillation it is 1 - 2 CDF(-v_b), with CDF(v) the share of time below v.
+    the period. Any oscillation gives 2 CDF(v_b) - 1, with CDF(v) the share of time that its velocity is
+    below v.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Fl
 def _share_below(speed: Floats, start: float, end: float) -> Floats:
     """Return the share of time that a straight line is below a speed.
 
-    It is NaN where the line is level at that speed: slip then rests.
+    It is NaN if the line is level at that speed: slip then rests.
     """
     if start == end:
         return np.where(speed == start, np.nan, speed > start)
@@ -72,15 +73,15 @@ def mean_prescribed_pulsating(ratio: ArrayLike, amplitude: ArrayLike, phase: Arr
     """Compute mean Coulomb friction under a sine along the belt and a pulsating normal load.
 
     The load 1 + amplitude*sin leads the oscillation of the slip velocity by a phase. The mean is (2/pi)
-    [arcsin(ratio) - amplitude sqrt(1 - ratio^2) cos(phase)] up to ratio 1: a load that presses while slip
-    goes forward pushes the body back.
+    [arcsin(ratio) - amplitude sqrt(1 - ratio^2) cos(phase)] up to ratio 1. A load that is larger at positive
+    slip velocity pushes the body back and lowers the mean, which may become negative.
 
     Parameters
     ----------
     ratio : array_like of float
         Belt speed over the amplitude of the slip velocity [-], any sign.
     amplitude : array_like of float
-        Amplitude of the normal load, in shares of its mean [-].
+        Amplitude of the normal load over its mean [-].
     phase : array_like of float
         Phase of the load against the oscillation of the slip velocity [rad].
 
@@ -91,7 +92,8 @@ def mean_prescribed_pulsating(ratio: ArrayLike, amplitude: ArrayLike, phase: Arr
 
     Notes
     -----
-    The result is -<n(t) sgn(w(t))>: the integral of n between the instants at which the slip w reverses.
+    The result is -<n(t) sgn(w(t))>: the load n is integrated between reversals of the slip velocity w, with
+    the sign of w.
     """
     size = np.clip(np.asarray(ratio, dtype=np.float64), -1.0, 1.0)
     pushed = np.asarray(amplitude) * np.sqrt((1.0 - size) * (1.0 + size)) * np.cos(phase)
@@ -99,7 +101,10 @@ def mean_prescribed_pulsating(ratio: ArrayLike, amplitude: ArrayLike, phase: Arr
 
 
 class MeanDirection(NamedTuple):
-    """Mean -<n sgn(w)>, its error by rounding, and the share of the normal load while slip rests."""
+    """Mean -<n sgn(w)> and its error by rounding.
+
+    at_rest: integral of the normal load n over the time at zero slip, divided by the period.
+    """
 
     mean: float
     error: float
@@ -111,9 +116,8 @@ def mean_direction(slip: Piecewise, normal_load: Piecewise) -> MeanDirection:
 
     The mean is relative to the friction coefficient.
 
-    It is -<n(t) sgn(w(t))>: the normal load n, of mean 1, is integrated in closed form between the instants
-    at which the slip velocity w changes its sign, its corners and its zeros. Both functions have the same
-    pieces.
+    It is -<n(t) sgn(w(t))>. The normal load n, of mean 1, is integrated in closed form between the corners
+    and the zeros of the slip velocity w, at which w may change its sign. Both functions have the same pieces.
     """
     zeros, edges = slip.crossings(), slip.edges
     cuts = np.unique(np.concatenate([edges, zeros.tau]))
@@ -161,10 +165,11 @@ def mean_prescribed_transverse(ratio: ArrayLike) -> Floats:
 def mean_prescribed_circular(ratio: ArrayLike) -> Floats:
     """Compute mean Coulomb friction along the belt under circular slip.
 
-    Circular slip has constant speed and a direction that turns at a constant rate. The mean is (2/pi) [E(k) -
-    (1 - k^2) K(k)]/k with modulus k = ratio up to 1, and (2/pi) E(1/ratio) from there on: Landen's
-    transformation of [(1 + r) E(m) - (1 - r) K(m)]/(pi r), m = 4r/(1 + r)^2, which loses digits at small r.
-    The difference up to 1 is k^2 (1 - k^2) R_D(0, 1, 1 - k^2)/3 (DLMF 19.25.1), where nothing cancels.
+    The oscillation of the slip velocity is circular: constant speed, direction turning at a constant rate. It
+    is added to -belt_speed. The mean is (2/pi) [E(k) - (1 - k^2) K(k)]/k with modulus k = ratio up to 1, and
+    (2/pi) E(1/ratio) from there on: Landen's transformation of [(1 + r) E(m) - (1 - r) K(m)]/(pi r),
+    m = 4r/(1 + r)^2, which loses digits at small r. The difference up to 1 is k^2 (1 - k^2) R_D(0, 1,
+    1 - k^2)/3 (DLMF 19.25.1), where nothing cancels.
 
     Parameters
     ----------
@@ -178,7 +183,8 @@ def mean_prescribed_circular(ratio: ArrayLike) -> Floats:
 
     References
     ----------
-    Gradient of the mean slip speed; elliptic integrals in the notation of Byrd & Friedman (1971).
+    Derivative of the mean slip speed with respect to belt speed; elliptic integrals in the notation of
+    Byrd & Friedman (1971).
     """
     from scipy.special import ellipe, elliprd
 
@@ -192,10 +198,10 @@ def mean_prescribed_circular(ratio: ArrayLike) -> Floats:
 
 
 def slip_back_and_forth(ratio: ArrayLike) -> tuple[Floats, Floats]:
-    """Compute the slip against and along the belt's, per period, of a sine along the belt.
+    """Compute distances slipped backward and forward per period, under a sine along the belt.
 
-    These are 2 (sin t - t cos t), and that plus 2 pi cos t, with cos t = ratio. From ratio 1 on the slip
-    against the belt is 0.
+    Forward is the direction of the mean slip. The distances are 2 (sin t - t cos t) backward, and that plus
+    2 pi cos t forward, with cos t = ratio. From ratio 1 on the distance backward is 0.
 
     Parameters
     ----------
@@ -205,7 +211,7 @@ def slip_back_and_forth(ratio: ArrayLike) -> tuple[Floats, Floats]:
     Returns
     -------
     back, forth : numpy.ndarray of float
-        Slip against and along the belt's [X].
+        Distances slipped against and along the mean slip [X].
     """
     size = np.abs(np.asarray(ratio, dtype=np.float64))
     angle = np.arccos(np.minimum(size, 1.0))
@@ -222,8 +228,9 @@ def _share_back(ratio: ArrayLike) -> Floats:
 def mean_soft_dahl(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
     """Compute mean Dahl friction under a sine along the belt with soft bristles, (1 - r)/(1 + r).
 
-    r = (slip back/slip forth)^(1/exponent). For exponent 1 it is the mean velocity over the mean speed, as
-    for LuGre friction of constant g. The error at finite stiffness is of order presliding^-2.
+    r = (distance slipped backward/distance forward)^(1/exponent). For exponent 1 the mean is the mean
+    velocity over the mean speed, as for LuGre friction of constant g. The error at finite stiffness is of
+    order presliding^-2.
 
     Parameters
     ----------
@@ -303,9 +310,9 @@ def mean_soft_circular(ratio: ArrayLike) -> Floats:
 def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats:
     """Compute mean elasto-plastic friction of constant g under a sine along the belt, with soft bristles.
 
-    The mean m solves m alpha(m) = 1 - slip back/slip forth, with alpha rising from 0 at breakaway_ratio to 1
-    at 1. It is at least breakaway_ratio however slow the belt, since bristles are elastic below. m has the
-    belt's sign.
+    The mean m has the sign of the belt speed. Its magnitude solves |m| alpha(|m|) = 1 - distance slipped
+    backward/distance forward, with alpha rising from 0 at breakaway_ratio to 1 at 1. Bristles are elastic
+    below breakaway, so |m| >= breakaway_ratio at any belt speed.
 
     Parameters
     ----------
@@ -334,10 +341,10 @@ def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats
 
 
 def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
-    """Compute mean Jenkins friction under a sine along the belt, exact where the slider never slips back.
+    """Compute mean Jenkins friction under a sine along the belt, exact if the slider never slips back.
 
-    It is 1 - (mean distance of the slip behind its running maximum)/presliding. It tends to 1 where the
-    spring is soft.
+    It is 1 - (mean distance of the slip behind its running maximum)/presliding. It tends to 1 for soft
+    springs.
 
     Parameters
     ----------
@@ -349,8 +356,8 @@ def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
     Returns
     -------
     numpy.ndarray of float
-        Mean friction [coefficient of steady sliding]; NaN where the slip back is more than twice the
-        presliding length.
+        Mean friction [coefficient of steady sliding]; NaN if the distance slipped backward is more
+        than twice the presliding length.
 
     Notes
     -----
@@ -372,12 +379,12 @@ def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
 
 
 def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
-    """Compute mean friction of a stiff Dahl contact minus Coulomb's, per presliding/X.
+    """Compute (mean of a stiff Dahl contact - Coulomb's) divided by presliding, the presliding length over X.
 
-    The slip is a sine along the belt. The difference is (2/(3 pi)) H ratio/(1 - ratio^2), with H = 2^(1 -
-    i)/(2 - i) the path, in presliding lengths, over which the jump of friction at a reversal is spread: 1 for
-    exponent i = 1 and for 0, an ideal spring that slips (Jenkins). The terms in sqrt(presliding) of the two
-    reversals of a period cancel.
+    The slip is a sine along the belt. The result is (2/(3 pi)) H ratio/(1 - ratio^2), with
+    H = 2^(1 - i)/(2 - i) the path, in presliding lengths, over which the jump of friction at a reversal is
+    spread. H is 1 for exponent i = 1, and for 0, an ideal spring that slips (Jenkins). The terms in
+    sqrt(presliding) of the two reversals of a period cancel.
 
     Parameters
     ----------
@@ -389,8 +396,8 @@ def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
     Returns
     -------
     numpy.ndarray of float
-        Difference of mean friction per presliding/X [coefficient of steady sliding]. It is infinite for
-        i >= 2, where the difference falls more slowly.
+        Difference of the means over presliding [coefficient of steady sliding]. It is infinite for i >= 2,
+        where the difference falls more slowly.
 
     Notes
     -----
@@ -404,10 +411,10 @@ def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
 def reversal_kick(friction: float, acceleration: float) -> float:
     """Compute velocity after a reversal minus that under Coulomb friction, per root of the presliding length.
 
-    After a reversal Dahl friction of exponent 1 changes its sign over a path of a presliding length d, and
-    accelerates the body until then. With q = path/d, kick/sqrt(d) is the integral over q > 0 of 2 f
-    exp(-q)/sqrt(2 a q + 4 f (1 - exp(-q))). So the steady state of a body tends to Coulomb's as the square
-    root of d, under prescribed slip as d.
+    After a reversal Dahl friction of exponent 1 changes its sign over a path of a presliding length d. Over
+    that path friction still pushes forward and adds to the velocity. With q = path/d, kick/sqrt(d) is the
+    integral over q > 0 of 2 f exp(-q)/sqrt(2 a q + 4 f (1 - exp(-q))). So the mean of a free body differs
+    from Coulomb's by a term of order sqrt(d), that of a prescribed slip by one of order d.
 
     Parameters
     ----------

@@ -29,36 +29,44 @@ from frictionlab.values.quantities import Floats
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
 NO_GROWTH = 1e-6
-"""By how much a multiplier may differ from one by rounding."""
+"""Largest difference from one that rounding gives a multiplier."""
 NEARLY_REPEATED = 1e-3
-"""How near states of an orbit are, over their size, between which fewer periods are tried for an orbit."""
+"""Largest distance of states of an orbit, over their size, at which an orbit of fewer periods is tried."""
 PLACES_ON_THE_BELT = 6
-"""Starts at rest along the way of the belt in a period."""
+"""Number of starts at rest on the belt, at places along its travel in a period."""
 UNREPEATED = 8
-"""Starts of motions that do not repeat: a state that a third of all starts reach is missed by 4 % of so many."""
+"""Number of starts followed if motions do not repeat.
+
+So many starts miss a state that is reached from a third of all starts in 4 % of cases."""
 POINTS_KEPT = 100
-"""States that are kept of a motion that does not repeat."""
+"""Number of states that are kept of a motion that does not repeat."""
 ONE_BRANCH = 1e-3
-"""How far apart, over their size, orbits of neighbouring belt speeds are taken for one that the belt speed moves."""
+"""Largest distance, over their size, at which orbits of neighbouring belt speeds count as one orbit.
+
+Belt speed moves such an orbit."""
 LONGEST_LEAP = 1_000_000_000
-"""Periods of one leap."""
+"""Largest number of periods of one leap."""
 CLOSED_FROM = 0.05
 """Step of Newton's method, over the size of a state, from which an orbit is closed beside a motion."""
 FEWEST, MOST = 200, 20_000
-"""Periods a start is followed for."""
+"""Smallest and largest number of periods for which a start is followed."""
 DECAYS, CLIMBS = 30.0, 2.0
-"""Time constants after which nothing is left of a start, and ways to the mean that a belt carries a mass at most."""
+"""Time constants after which nothing is left of a start, and distance that a belt carries a mass to its mean.
+
+The distance is at most this multiple of the deflection of the spring under the friction force."""
 
 
 @dataclass(frozen=True)
 class Attractor:
-    """Where a start led: an orbit closed after some drive periods, or (0) a motion that never repeats.
+    """Destination of a start: a closed orbit, or a motion that never repeats.
 
-    low, high: the smallest and the largest mean over one drive period. followed: for how many periods. points: states
-    at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size]. average: over a
-    long time, of all motions on one attractor that never repeat; None where nothing has asked for it. neutral: a
-    motion that repeats, as others beside it do, for it has no damping. stopped: after too many steps. lost: it runs
-    away, stopped for that.
+    period: drive periods after which the orbit repeats; 0 if the motion never does. followed: number of
+    periods for which the motion was followed. low, high: smallest and largest mean over one drive period.
+    points [n, size]: states at the starts of the periods of a closed orbit, or at the last ones of another
+    motion. average: mean over a long time of all motions on one attractor that never repeat; None if it has
+    not been computed. neutral: True for a motion that repeats, like others near it, because it has no
+    damping. stopped: True if following stopped after too many steps. lost: True if it stopped because the
+    motion runs away.
     """
 
     followed: int
@@ -73,7 +81,7 @@ class Attractor:
     lost: bool = False
 
     def agrees(self, other: Attractor) -> bool:
-        """Whether both have the same mean friction, for the same reason."""
+        """Check whether both have the same mean friction, as orbits of one period or by the same average."""
         if self.curve is None or other.curve is None or self.period != other.period:
             return self.average is not None and self.average is other.average
         doubt = self.error + other.error
@@ -81,25 +89,25 @@ class Attractor:
 
     @cached_property
     def known(self) -> KnownOrbit:
-        """As kernels see it."""
+        """Orbit in the form that kernels take."""
         assert self.curve is not None
         return KnownOrbit(self.curve.states[0], self.curve.matrices[0], 1.0 - multiplier(self.curve))
 
     @cached_property
     def mean(self) -> float:
-        """The mean friction over all periods of a closed orbit, or over a long time; NaN where that is not known."""
+        """Mean friction over all periods of a closed orbit, or over a long time; NaN if it is not known."""
         if self.curve is not None:
             return float(self.curve.closed.mean[0])
         return math.nan if self.average is None else self.average.mean
 
     @property
     def averaged_over(self) -> int:
-        """Periods that the mean is taken over; 1 where only the range of one-period means is known."""
+        """Number of periods of the mean; 1 if only the range of one-period means is known."""
         return self.period or (1 if self.average is None else self.followed)
 
     @cached_property
     def error(self) -> float:
-        """That of the mean; of one over a long time two standard errors."""
+        """Error of the mean; two standard errors for a mean over a long time."""
         if self.curve is not None:
             return float(self.curve.closed.error[0])
         return math.nan if self.average is None else self.average.error
@@ -107,10 +115,12 @@ class Attractor:
 
 @dataclass(frozen=True)
 class Trial:
-    """Starts that all ended in one state: how many, how far apart, followed for how many drive periods at least.
+    """Starts that all ended in one state.
 
-    apart [scene velocity]: the largest distance between two of them, a displacement counted as its spring's energy.
-    carried: how many states of neighbouring belt speeds were followed besides, for as long as it took.
+    starts: number of starts. apart [scene velocity]: largest distance between two of them, with a
+    displacement counted by the energy of the spring. periods: smallest number of drive periods for which one
+    was followed. carried: number of states of neighbouring belt speeds that were also followed, for as long
+    as it took.
     """
 
     starts: int
@@ -122,7 +132,7 @@ class Trial:
     def of(
         cls, at: Sequence[tuple[complex, complex]], stiffness: float, periods: int, carried: int = 0
     ) -> Trial:
-        """Of starts at these positions and velocities."""
+        """Return the trial of starts at these positions and velocities."""
         pairs = combinations(at, 2)
         apart = max(
             (math.sqrt(stiffness * abs(x - y) ** 2 + abs(v - u) ** 2) for (x, v), (y, u) in pairs),
@@ -131,7 +141,10 @@ class Trial:
         return cls(len(at), apart, periods, carried)
 
     def sentence(self, multiplier: float) -> str:
-        """For ``reason``; multiplier: the largest of the state, whose decay is the slowest, NaN where not known."""
+        """Return the sentence for ``reason``.
+
+        multiplier: largest multiplier of the state, whose decay is the slowest; NaN if unknown.
+        """
         told = f"tested: {self.starts} starts up to {self.apart:.3g} apart"
         told += " and the states of neighbouring belt speeds" if self.carried else ""
         told = f"{told} ended here, the starts followed for {self.periods} periods"
@@ -142,13 +155,16 @@ class Trial:
 
 
 def multiplier(curve: Curve, row: int = 0) -> float:
-    """The largest modulus of an orbit's Floquet multipliers."""
+    """Return the largest modulus of the Floquet multipliers of an orbit."""
     return float(largest_modulus(curve.matrices[row : row + 1])[0])
 
 
 def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> Attractor | None:
-    """A closed orbit, with means over each drive period and states there; None where it did not close, or repels."""
-    # of slip that never reverses bristles may near their limit as a power of the way: multipliers are then one
+    """Return a closed orbit with its means over each drive period and its states there.
+
+    Return None if the orbit did not close, or if it repels.
+    """
+    # if slip never reverses, bristles may near their limit as a power of the path: multipliers are then one
     maps = curve.closed.maps[0]
     if maps < 0.0 or (maps > 0.0 and not multiplier(curve) < STABLE):
         return None
@@ -157,10 +173,11 @@ def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> A
 
 
 def starts(scene: Scene, law: FrictionLaw) -> list[Initial | None]:
-    """Starts far from each other: shaken freely, resting on the belt, flung against it, and let go ahead of it.
+    """Return starts far apart: shaken freely, resting on the belt, flung against it, let go ahead of it.
 
-    ``scene.initial``, where it is given, comes first. Where the belt would carry the mass for longer than a start is
-    followed before it slips, the others start nearer to where it does. In the plane the last two move across, too.
+    ``scene.initial`` comes first if it is given. If the belt would carry the mass, before it slips, for
+    longer than a start is followed, the others start nearer to the place at which it slips. In the plane the
+    last two move across the belt, too.
     """
     limit = scene.mass().normal_load * friction_at_rest(law)
     given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
@@ -175,7 +192,10 @@ def starts(scene: Scene, law: FrictionLaw) -> list[Initial | None]:
 
 
 def _bent_starts(scene: Scene, limit: float) -> list[Initial]:
-    """Of a body that is not linear, motions that one harmonic balances: without friction, and with the most of it."""
+    """Return starts on motions of a nonlinear body that balance one harmonic; none for a linear body.
+
+    The motions are those without friction and those with the largest friction.
+    """
     mass = scene.mass()
     rubs = (0.0, 4.0 / math.pi * limit) if mass.bends else ()
     motions = [each for rub in rubs for each in one_harmonic_motions(mass, rub)]
@@ -183,9 +203,9 @@ def _bent_starts(scene: Scene, limit: float) -> list[Initial]:
 
 
 def moving_across(scene: Scene, law: FrictionLaw, along: Sequence[Initial]) -> list[Initial]:
-    """These starts, in the plane each with a motion across the belt besides, as wide as friction and load hold there.
+    """Return these starts, in the plane each with an additional motion across the belt.
 
-    Its phases are spread.
+    Its amplitude is the deflection that friction and load hold across the belt. Its phases are spread.
     """
     if along_the_belt(scene, law):
         return list(along)
@@ -202,9 +222,10 @@ def moving_across(scene: Scene, law: FrictionLaw, along: Sequence[Initial]) -> l
 
 
 def carried_for(scene: Scene, limit: float) -> float:
-    """Periods in which the belt carries a mass, held by this force, over both its spring's deflections under it.
+    """Return the number of periods in which the belt carries a mass over both deflections of its spring.
 
-    0 on a belt at rest.
+    These are the deflections under the force ``limit`` that holds the mass, in either direction. Return 0 on
+    a belt at rest.
     """
     mass = scene.mass()
     way = abs(scene.belt_speed) * 2.0 * math.pi / mass.frequency * scene.periods
@@ -212,11 +233,11 @@ def carried_for(scene: Scene, limit: float) -> float:
 
 
 def resting_starts(scene: Scene, law: FrictionLaw, count: int = PLACES_ON_THE_BELT) -> list[Initial]:
-    """At rest on the belt, at places along the way it goes in one period, before the one at which slip begins.
+    """Return starts at rest on the belt, along its travel in the period before slip begins.
 
-    Whatever rests on the belt at some time begins to slip at one phase of the drive, and goes on from there as
-    anything else that begins to slip at that phase does. These starts begin at phases spread over the period; in the
-    plane friction holds them in directions that are spread, too.
+    A mass that rests on the belt at some time begins to slip at one phase of the drive. All masses that begin
+    to slip at the same phase move alike from there on. These starts begin to slip at phases spread over the
+    period; in the plane friction holds them in directions that are spread, too.
     """
     mass, signals, belt = scene.mass(), scene.signals(), scene.belt_speed
     velocity, velocity2 = belt + float(signals.belt[0](0.0)), float(signals.belt[1](0.0))
@@ -236,7 +257,10 @@ def resting_starts(scene: Scene, law: FrictionLaw, count: int = PLACES_ON_THE_BE
 
 
 def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
-    """Thrown off sliding that never reverses, by half and by the whole swing of the loads, to all sides."""
+    """Return starts thrown off sliding that never reverses, in all directions of position and velocity.
+
+    They are thrown by half and by all of the swing of the loads (``force_swing``).
+    """
     x, v = _sliding_on(problem, scene)
     turns, swing = [math.pi * (k + 0.5) / 2.0 for k in range(4)], force_swing(scene)
     thrown = [cmath.rect(share * swing, turn) for share in (0.5, 1.0) for turn in turns]
@@ -248,18 +272,21 @@ def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
 
 
 def _sliding_on(problem: PeriodicProblem, scene: Scene) -> tuple[complex, complex]:
-    """Position and velocity of the friction-free motion about steady sliding: a state wherever it never reverses."""
+    """Return position and velocity of the friction-free motion about steady sliding.
+
+    It is a steady state if its slip never reverses.
+    """
     (x, v), law = problem.place(scene.belt_speed, None), problem.law
-    if law.count() == 0:  # with memory that place is shifted by friction already
+    if law.count() == 0:  # for laws with memory this place already includes the shift by friction
         shift = problem.mass.normal_load * law.sliding_friction(abs(scene.belt_speed))
         x += math.copysign(shift, scene.belt_speed)
     return x, v
 
 
 def force_swing(scene: Scene) -> float:
-    """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger.
+    """Return the static deflection under the load along the belt, or the swing of a free mass if larger.
 
-    At undamped resonance, where nothing bounds a free mass, the first.
+    At undamped resonance, where the swing of a free mass is unbounded, it is the static deflection.
     """
     signals, frequency = scene.signals(), scene.frequency
     largest = max(map(abs, signals.load[0].extremes(signals.period)))
@@ -268,21 +295,24 @@ def force_swing(scene: Scene) -> float:
 
 
 def quick_starts(problem: PeriodicProblem, belt_speed: float) -> list[tuple[complex, complex]]:
-    """Position and velocity of the two starts that are followed while a curve is closed: at rest on the belt, and
-    sliding as if slip never reversed."""
+    """Return position and velocity of the two starts that are followed while a curve is closed.
+
+    These are at rest on the belt, and sliding as if slip never reversed.
+    """
     return [(0.0, belt_speed), problem.place(belt_speed, None)]
 
 
 def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> FollowedStarts:
-    """Starts followed to where they lead. The candidate is an orbit already known.
+    """Follow starts to their destinations. The candidate is an orbit already known.
 
-    More starts follow the first ones for as long as all of them reach one closed orbit, or where motions that do not
-    repeat leave open what others reach. Beside such motions the candidate itself is one of the starts.
+    More starts follow the first ones as long as all of them reach one closed orbit, or if motions that do not
+    repeat leave open what other starts reach. If there are such motions the candidate itself is one of the
+    starts.
     """
     followed = FollowedStarts(problem, scene, candidate)
     first, more = all_starts(problem, scene)
     for start in first:
-        # motions of too many steps have no mean; a second one is followed for what else there is
+        # motions of too many steps have no mean; others are followed until there are two such motions
         if followed.slow < 2:
             followed.follow(start)
     for start in more:
@@ -298,9 +328,12 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
 def all_starts(
     problem: PeriodicProblem, scene: Scene, more: int = 0
 ) -> tuple[list[Initial | None], list[Initial]]:
-    """Those that are followed always, and those that follow where the first ones agree; more: at rest on the belt."""
+    """Return the starts that are always followed, and those that are followed if the first ones agree.
+
+    more: number of further starts at rest on the belt.
+    """
     law, (x, v) = problem.law, _sliding_on(problem, scene)
-    # with memory no start at all is this one, with the memory of sliding
+    # for laws with memory the start None is this one, with the memory of sliding
     smooth = None if law.count() else Initial(x=x.real, velocity=v.real, x2=x.imag, velocity2=v.imag)
     first = starts(scene, law)
     others = [*resting_starts(scene, law), *thrown_starts(problem, scene)]
@@ -308,9 +341,10 @@ def all_starts(
 
 
 class FollowedStarts:
-    """Starts at one belt speed, where they led, and the kernel time it took.
+    """Starts at one belt speed, their destinations, and the kernel time.
 
-    known: the states found, the candidate first where there is one; a motion that does not repeat each time anew.
+    known: states found, the candidate first if there is one. A motion that does not repeat is added each
+    time.
     """
 
     def __init__(self, problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> None:
@@ -324,36 +358,42 @@ class FollowedStarts:
 
     @property
     def ended(self) -> list[Attractor]:
-        """Where those led that were not stopped on their way; all, where every one was."""
+        """Destinations of starts that were not stopped on the way; of all starts if all were stopped."""
         return [one for one in self.reached if not one.stopped] or self.reached
 
     @property
     def slow(self) -> int:
-        """How many were stopped after too many steps."""
+        """Number of starts that were stopped after too many steps."""
         return sum(one.stopped and not one.lost for one in self.reached)
 
     def one_state_so_far(self) -> bool:
-        """Whether all that were not stopped ended on one closed orbit, or may yet: few, and some do not repeat."""
+        """Check whether all starts that were not stopped ended on one closed orbit, or may still do so.
+
+        They may if some do not repeat and fewer than ``UNREPEATED`` were followed.
+        """
         repeating = [one for one in self.ended if one.curve is not None]
         alike = all(repeating[0].agrees(other) for other in repeating[1:])
         return alike and (len(repeating) == len(self.ended) or len(self.reached) < UNREPEATED)
 
     @property
     def trial(self) -> Trial:
-        """What is told of the starts, where all of them ended in one state."""
+        """Record of the starts if all of them ended in one state."""
         at = [self._problem.place(self._scene.belt_speed, start) for start in self._starts]
         carried = len(self.reached) - len(at)
         return Trial.of(at, self._problem.mass.stiffness, self._fewest, carried)
 
     def follow(self, start: Initial | None) -> None:
-        """To its end, or until it is sure to end on the first known orbit of one period."""
+        """Follow a start to its end, or until it is sure to end on the first known orbit of one period."""
         self._starts.append(start)
         periods = self.carry(self._problem.state_at(self._scene.belt_speed, start))
         if periods > 1:  # a start on the orbit itself is there at once
             self._fewest = min(self._fewest, periods)
 
     def carry(self, state: Floats) -> int:
-        """The same from a state, that of another belt speed for one; for how many periods it was followed."""
+        """Follow a state in the same way, for example one of another belt speed.
+
+        Return the number of periods for which it was followed.
+        """
         first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
         known = None if first is None else first.known
         soon = min(self._patience, FEWEST)
@@ -378,7 +418,7 @@ class FollowedStarts:
         return len(way.means)
 
     def _led(self, state: Floats) -> tuple[Attractor | None, int]:
-        """Return the closed orbit of one period to which leaps lead from a state, or None, and the periods."""
+        """Return the closed one-period orbit to which leaps lead from a state, or None, and the periods."""
         leaper = Leaper(self._problem, self._scene.belt_speed, state, LONGEST_LEAP)
         set_out, tried = state, math.inf
         while (newton := leaper.leap()) is not None:
@@ -404,7 +444,7 @@ class FollowedStarts:
             self.known = [*self.known, found]
 
     def lead_to(self, ends: dict[int, Attractor]) -> None:
-        """Enter where the motions at these places of ``reached`` lead, as longer following has shown."""
+        """Replace destinations in ``reached``, by place, by those that longer following has found."""
         self.reached = [ends.get(place, one) for place, one in enumerate(self.reached)]
         left = [one for one in self.known if one.curve is not None]
         for one in ends.values():
@@ -413,7 +453,10 @@ class FollowedStarts:
         self.known = left
 
     def carry_on(self, one: Attractor) -> bool:
-        """Follow a state of another belt speed, unless it is an orbit known here, moved; whether it was followed."""
+        """Follow a state of another belt speed, unless its orbit is known here, moved by belt speed.
+
+        Return whether it was followed.
+        """
         if one.period == 1 and one.curve is not None and self._has_beside(one.points[-1]):
             return False
         self.carry(one.points[-1])
@@ -425,10 +468,10 @@ class FollowedStarts:
 
 
 def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> int:
-    """Periods after which every start is at the candidate, if that attracts them all.
+    """Return the periods after which every start is at the candidate, if the candidate attracts them all.
 
-    In the motion's own times: that in which dashpots end it, that in which the belt carries it to the mean friction,
-    and that in which the candidate attracts it.
+    This is the longest of three times: that in which dashpots end a motion, that in which the belt carries
+    the mass to the mean friction, and that in which the candidate attracts it.
     """
     mass = scene.mass()
     period = 2.0 * math.pi / mass.frequency
@@ -446,7 +489,10 @@ def _beside(one: Floats, other: Floats) -> bool:
 
 
 def same_state(one: Attractor, other: Attractor) -> bool:
-    """Motions that never repeat are not told apart where the mean of one is not known."""
+    """Check whether two states are the same.
+
+    Two motions that never repeat count as the same if the mean of one is unknown.
+    """
     unknown = one.period == other.period == 0 and math.isnan(one.mean + other.mean)
     return one is other or one.agrees(other) or unknown
 
@@ -454,7 +500,7 @@ def same_state(one: Attractor, other: Attractor) -> bool:
 def found_state(
     problem: PeriodicProblem, place: int, state: Attractor, ended: Sequence[Attractor], found_from: str = ""
 ) -> FoundState:
-    """As a table has it. ended: where the starts ended."""
+    """Return a state as a table holds it. ended: destinations of all starts."""
     x, velocity = problem.positions(state.points)
     numbers = state.mean, state.error, state.low, state.high
     share = sum(same_state(state, one) for one in ended) / len(ended)
@@ -462,7 +508,7 @@ def found_state(
 
 
 def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
-    """The orbit at the end of a way, or the spread of what never repeats; and the kernel time it took."""
+    """Return the orbit at the end of a transient, or the motion that never repeats, and the kernel time."""
     seconds = 0.0
     if way.period > 0:
         curve, means, points, seconds = _shortest(problem, scene, way)
@@ -480,7 +526,7 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
 
 
 def undamped(scene: Scene) -> bool:
-    """Whether a free oscillation, along the belt or across it, has no dashpot."""
+    """Check whether a free oscillation, along the belt or across it, has no dashpot."""
     mass = scene.mass()
     damps = (
         mass.damping > 0.0
@@ -491,21 +537,21 @@ def undamped(scene: Scene) -> bool:
 
 
 def ends_on(state: Floats, period: int, orbit: Attractor) -> bool:
-    """Whether a state is beside one of a closed orbit of so many periods."""
+    """Check whether a state is near a state of a closed orbit of ``period`` periods."""
     return orbit.period == period > 0 and any(_beside(state, point) for point in orbit.points)
 
 
 def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, Floats, Floats, float]:
-    """The orbit at the end of a way, its mean and its state in each of its periods, and the kernel time it took.
+    """Return the orbit at the end of a transient, its mean and its state in each period, and the kernel time.
 
-    Of fewer periods than were seen where the motion was still alternating.
+    The orbit has fewer periods than were seen if the motion was still alternating.
     """
     curve, seconds = problem.close([scene], way.state, way.period)
     if way.period == 1 or not curve.closed.found[0]:
         return curve, curve.closed.mean, curve.states, seconds
     whole = problem.repeated(
         scene.belt_speed, curve.states[0], way.period
-    )  # of finer maps than those on the way
+    )  # with finer maps than those on the way
     seconds += whole.seconds
     near = NEARLY_REPEATED * max(1.0, float(np.abs(curve.states[0]).max()))
     for period in [each for each in range(1, len(whole.states)) if way.period % each == 0]:
@@ -519,9 +565,10 @@ def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[C
 
 
 class Destination(Protocol):
-    """Where a start led: after how many drive periods the motion repeats (0: never), and its mean over them.
+    """Destination of a start.
 
-    mean: NaN of a motion that never repeats and was not followed for long.
+    period: drive periods after which the motion repeats; 0 if it never does. mean: mean over them; NaN for a
+    motion that never repeats and was not followed for long.
     """
 
     @property
@@ -537,7 +584,7 @@ class Destination(Protocol):
 
 
 def describe(reached: Sequence[Destination], digits: int = 9) -> str:
-    """A sentence on the steady states that several starts reached, with so many digits of their means."""
+    """Write a sentence on the steady states that several starts reached; digits: digits of their means."""
     parts = [_describe_state(one, digits) for one in _different(reached)]
     wild = [one.followed for one in reached if math.isnan(one.mean)]
     if wild:
@@ -546,7 +593,10 @@ def describe(reached: Sequence[Destination], digits: int = 9) -> str:
 
 
 def _different(reached: Sequence[Destination]) -> list[Destination]:
-    """Those with a mean, each state once: a longer orbit with the mean of a shorter one repeats that."""
+    """Return the destinations with a mean, each state once.
+
+    A longer orbit with the mean of a shorter one counts as that one, repeated.
+    """
     found: list[Destination] = []
     for one in sorted((each for each in reached if not math.isnan(each.mean)), key=lambda each: each.period):
         if not any(_repeats(one, other) for other in found):
@@ -560,7 +610,7 @@ def _repeats(one: Destination, other: Destination) -> bool:
 
 
 def left_unfinished(reached: Sequence[Attractor]) -> str:
-    """A sentence on the starts that were stopped, '' where none was."""
+    """Write a sentence on the starts that were stopped; '' if none was."""
     stopped, lost = [one.followed for one in reached if one.stopped], sum(one.lost for one in reached)
     if lost:
         return f"{lost} of {len(reached)} starts run away: far out the spring along the belt pushes outward"

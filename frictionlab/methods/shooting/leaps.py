@@ -1,12 +1,13 @@
-"""Many periods of a motion at once, where it changes slowly from one to the next.
+"""Lead a motion over many periods at once if it changes slowly from one period to the next.
 
-About a state s the map of a period is s + G + M d, M its derivative. Repeated H times that affine map leads to
-s + (1 + M + ... + M^(H-1)) G, whatever the multipliers. True maps there and on the way show how far off it is, and
-choose H: with H = 1 it is the motion itself. So the number of maps hangs on how often the motion bends, not on how
-many periods it takes.
+Near a state s the map of a period takes s + d to s + G + M d, with M its derivative. H repetitions of this
+affine map lead from s to s + (1 + M + ... + M^(H-1)) G, whatever the multipliers. True maps at the end of
+such a leap and on the way measure its error, which chooses H. With H = 1 the leap is the motion itself. The
+number of maps depends on how often the motion bends, not on how many periods it takes.
 
-Licence: of a body under a plate that vibrates at 26 kHz (LuGre, multipliers within 4e-4 of one) starts end after some
-150 maps; period by period 7,000 leave 8 of 9 starts open (tests/methods/shooting/test_leaps.py).
+Licence, measured on a body under a plate that vibrates at 26 kHz (LuGre, multipliers within 4e-4 of one):
+starts end after some 150 maps; 7,000 maps period by period leave 8 of 9 starts open
+(tests/methods/shooting/test_leaps.py).
 """
 
 from __future__ import annotations
@@ -22,22 +23,25 @@ from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.values.quantities import Floats
 
 MOST_MAPS = 1000
-"""True maps after which no leap is tried any more."""
+"""Number of true maps after which no further leap is tried."""
 SHARE, FLOOR = 0.02, 1e-9
-"""Error of a leap over the distance that it leads, and over the size of the state."""
+"""Largest error of a leap: SHARE of the distance that it leads, plus FLOOR of the size of the state."""
 ON_THE_WAY = (0.11, 0.3, 0.62, 0.83)
-"""Shares of a leap at which true maps are made: it may cross what its end does not see."""
+"""Fractions of a leap at which true maps are made: its end alone does not show every change on the way."""
 MOST_ON_A_SPIRAL = 16
-"""States on the way to an orbit at which a true map must lead as the derivative of the orbit says."""
+"""Largest number of states on the way to an orbit at which a true map is compared with the affine map.
+
+The affine map is that of the orbit's monodromy matrix."""
 OBEYED = 0.1
-"""Share of the change by a map that the affine map may miss there."""
+"""Largest error of the affine map there, over the change by a map."""
 
 
 @dataclass
 class Leaper:
-    """A motion at one belt speed that is led on by leaps.
+    """Motion at one belt speed that is led on by leaps.
 
-    state: the one it has come to. periods: how many it has passed. maps: true maps made, derivatives included.
+    state: state reached so far. longest: most periods of one leap. periods: periods passed so far. maps: true
+    maps made so far, including those for derivatives.
     """
 
     problem: PeriodicProblem
@@ -53,11 +57,14 @@ class Leaper:
 
     @property
     def _fewest(self) -> int:
-        """Periods of the shortest leap that costs no more than true maps."""
+        """Number of periods of the shortest leap: it costs no more than as many true maps."""
         return self.state.size + 3
 
     def leap(self) -> Floats | None:
-        """Lead the motion on; return Newton's step from where it was, None where a leap pays no longer."""
+        """Lead the motion on by one leap.
+
+        Return Newton's step from the state before the leap; None if a leap no longer pays.
+        """
         base = self._mapped(self.state[None])[0] - self.state
         matrix = self._derivative(self.state)
         length = self._within_growth(matrix)
@@ -75,9 +82,9 @@ class Leaper:
         return None
 
     def ends_on(self, orbit: KnownOrbit) -> bool:
-        """Check that the affine map of an orbit leads the whole way there: true maps along its spiral obey it."""
+        """Check that the motion goes to an orbit: true maps along the way must agree with its affine map."""
         away = self.state - orbit.state
-        # how far off the orbit itself is, by a fine map, is what cannot be told apart
+        # distances below the error of the orbit itself, measured by a fine map, cannot be told apart
         off = float(np.linalg.norm(self._mapped(orbit.state[None])[0] - orbit.state))
         noise = 2.0 * off + FINE * self.problem.mass.normal_load
         steps = _spread(orbit.monodromy)
@@ -91,7 +98,10 @@ class Leaper:
         return bool((missed <= OBEYED * changed + noise).all())
 
     def _tried(self, matrix: Floats, base: Floats, length: int) -> tuple[Floats, float, Floats]:
-        """Where a leap of so many periods leads, its error by true maps there and on the way, and what it misses."""
+        """Return the displacement of a leap over ``length`` periods, its error, and its defect at the end.
+
+        True maps at the end and on the way give the error.
+        """
         power, total = power_sum(matrix, length)
         moved = total @ base
         parts = [power_sum(matrix, max(1, int(share * length))) for share in ON_THE_WAY]
@@ -102,7 +112,7 @@ class Leaper:
         return moved, float(np.linalg.norm(defects, axis=1).max()) / 3.0, defects[0]
 
     def _within_growth(self, matrix: Floats) -> int:
-        """Length of the next leap; what grows may grow a thousandfold in it."""
+        """Return the length of the next leap, in which a growing deviation grows a thousandfold at most."""
         if not np.isfinite(matrix).all():
             return 0
         radius = float(np.abs(np.linalg.eigvals(matrix)).max())
@@ -133,12 +143,15 @@ def power_sum(matrix: Floats, length: int) -> tuple[Floats, Floats]:
 
 
 def _newton(matrix: Floats, base: Floats) -> Floats:
-    """Step to the fixed point of the affine map; the least one where multipliers are one."""
+    """Return the step to the fixed point of the affine map; the shortest such step if multipliers are one."""
     return np.asarray(np.linalg.lstsq(np.eye(len(base)) - matrix, base, rcond=1e-7)[0])
 
 
 def _spread(matrix: Floats) -> list[int]:
-    """Counts of periods after which a spiral is looked at, until a hundredth of the distance is left."""
+    """Return numbers of periods at which the way to an orbit is checked.
+
+    After the last of them a hundredth of the distance is left.
+    """
     modulus = np.abs(np.linalg.eigvals(matrix))
     slowest = float(modulus[modulus < 1.0 - 1e-9].max(initial=1e-3))
     last = max(1, int(math.log(0.01) / math.log(max(slowest, 1e-3))))

@@ -1,8 +1,8 @@
-"""The mean friction of motions that do not repeat, over a long time, with an error from its own scatter.
+"""Mean friction of motions that do not repeat, over a long time, with an error from its own scatter.
 
-Averages weighted by a bump that vanishes with all its derivatives at both ends (Birkhoff averages) converge faster
-than any power of the time where a motion is quasi-periodic, and as slowly as plain ones where it is chaotic. That
-tells the two apart (Das, Sander, Saiki & Yorke 2017, Nonlinearity 30, 4111).
+A Birkhoff average has a weight that vanishes with all its derivatives at both ends. It converges faster than
+any power of the time if the motion is quasi-periodic, and as slowly as a plain average if it is chaotic. This
+difference distinguishes the two (Das, Sander, Saiki & Yorke 2017, Nonlinearity 30, 4111).
 """
 
 from __future__ import annotations
@@ -18,52 +18,63 @@ from frictionlab.theory.rest import friction_at_rest
 from frictionlab.values.quantities import Floats
 
 BLOCKS = 8
-"""Parts of each motion whose means are compared; each long against the time in which motions forget."""
+"""Number of parts of each motion whose means are compared.
+
+Each part is long against the time in which a motion forgets its past."""
 WINDOWS = 4
-"""Halves of a motion, overlapping, whose weighted means are compared."""
+"""Number of overlapping halves of a motion whose weighted means are compared."""
 REGULAR, SETTLED = 0.1, 1e-3
-"""How far apart weighted means of a quasi-periodic motion are, over what chaos would leave plain ones, and over how
-much those of single periods scatter: chaos comes below the first alone now and then."""
+"""Largest difference of weighted means of a quasi-periodic motion, for two criteria that must both hold.
+
+The first is relative to the error of the plain mean, the second to the standard deviation of the means of
+single periods. Chaotic motion sometimes meets the first alone."""
 TWO_SIGMA = (math.inf, 13.97, 4.527, 3.307, 2.869, 2.649, 2.517, 2.429, 2.366, 2.320, 2.284, 2.255, 2.231)
-"""Student's t of two standard deviations (95.45 %), by degrees of freedom; beyond, 2 (1 + 1.3/n) is within .01."""
+"""Student's t of two standard deviations (95.45 %), by degrees of freedom.
+
+For more degrees of freedom n, 2 (1 + 1.3/n) is within 0.01."""
 MOST_ALIKE = 0.9
-"""Largest correlation of neighbouring blocks that is believed: beyond, the time is too short to tell it."""
+"""Largest correlation of neighbouring blocks that is used: above it the time is too short to measure it."""
 SAME_MEAN, LEAST_APART = 1.5, 1e-6
-"""Difference of two means, over what their errors together allow at two standard errors, that keeps them one; and the
-smallest that tells them apart."""
+"""Largest difference of two means that count as one: SAME_MEAN times their joint error, plus LEAST_APART.
+
+The errors of the means are two standard errors."""
 EARNED = 1e-3
-"""Largest error of a mean that is told, over friction at rest."""
+"""Largest error of a mean that is reported, over friction at rest."""
 DRIVEN, FREE = "drive periods", "periods of the free mass"
-"""What it is taken over."""
+"""Units of the time over which the mean is taken."""
 SHARED = "states that differ have this mean: "
-"""Said before a description of them."""
+"""Text before a description of these states."""
 
 
 class LongMean(NamedTuple):
-    """A mean over a long time, two standard errors of it, and whether the motion is quasi-periodic (else chaotic)."""
+    """Mean over a long time.
+
+    error: two standard errors of a chaotic mean, twice the difference of weighted means of a quasi-periodic
+    one. quasi_periodic: True if the motion is quasi-periodic, else it is chaotic.
+    """
 
     mean: float
     error: float
     quasi_periodic: bool
 
     def sentence(self, window: float, of: str) -> str:
-        """What it is a mean of."""
+        """Return a sentence on the motion and the time over which the mean is taken."""
         named = "quasi-periodic" if self.quasi_periodic else "chaotic"
         return f"the motion does not repeat ({named}): its mean over {window:.0f} {of}"
 
 
 def is_earned(error: float, law: FrictionLaw, tolerance: float) -> bool:
-    """Check that a long mean is known well enough: to the tolerance, or to a thousandth of friction at rest."""
+    """Check that the error of a long mean is within the tolerance or a thousandth of friction at rest."""
     return error <= max(tolerance, EARNED * friction_at_rest(law))
 
 
 def too_wide(mean: float, error: float) -> str:
-    """Return why a long mean is not told."""
+    """Return why a long mean is not reported."""
     return f"is known to be {mean:.4g} +- {error:.2g} only, which is no answer"
 
 
 def birkhoff_mean(values: Floats) -> float:
-    """The average of evenly spaced values with the weight exp(-1/(s (1 - s))), s from 0 to 1.
+    """Return the average of evenly spaced values with the weight exp(-1/(s (1 - s))), s from 0 to 1.
 
     >>> import numpy as np
     >>> turns = np.cos(2.0 * np.pi * 0.618034 * np.arange(1000) + 1.0)
@@ -76,7 +87,10 @@ def birkhoff_mean(values: Floats) -> float:
 
 
 def long_mean(motions: Sequence[Floats]) -> LongMean:
-    """The mean friction over all of several motions on one attractor, from the means of their periods [n] each."""
+    """Return the mean friction over all of several motions on one attractor.
+
+    motions: for each motion the means of its periods [n].
+    """
     by_blocks = [np.array([part.mean() for part in np.array_split(each, BLOCKS)]) for each in motions]
     error = _error_of_blocks(by_blocks)
     weighted = [birkhoff_mean(each) for each in motions]
@@ -92,15 +106,16 @@ def long_mean(motions: Sequence[Floats]) -> LongMean:
 
 
 def near_each_other(one: LongMean, other: LongMean) -> bool:
-    """Whether two means may be those of one attractor."""
+    """Check whether two means may be those of one attractor."""
     return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + LEAST_APART
 
 
 def spread_of_one_mean(means: Sequence[float], errors: Sequence[float], tolerance: float) -> float:
-    """By how much the means of states differ that pass for one number, within the tolerance; else NaN.
+    """Return the range of the means of several states if they count as one number; else NaN.
 
-    Motions next to a doubling, or that close in on an orbit slower than they are followed, differ without a
-    difference in their means. tolerance: 0 where one of them is a long mean, known to no more than its error.
+    Motions next to a period doubling differ without a difference in their means, as do motions that approach
+    an orbit more slowly than they are followed. tolerance: largest range plus error; 0 if one of the means is
+    a long mean, for which the joint error of two means is the limit.
     """
     spread, doubt = float(np.ptp(means)), float(np.max(errors))
     known = tolerance - doubt if tolerance else SAME_MEAN * math.sqrt(2.0) * doubt + LEAST_APART
@@ -108,13 +123,13 @@ def spread_of_one_mean(means: Sequence[float], errors: Sequence[float], toleranc
 
 
 def _halves(values: Floats) -> list[Floats]:
-    """Parts half as long, from evenly spread beginnings."""
+    """Return parts half as long, with evenly spaced beginnings."""
     half = len(values) // 2
     return [values[first : first + half] for first in np.linspace(0, half, WINDOWS).astype(int)]
 
 
 def _error_of_blocks(motions: Sequence[Floats]) -> float:
-    """Two standard errors of the mean of all blocks, of which neighbours in time may be alike."""
+    """Return two standard errors of the mean of all blocks, whose neighbours in time may be correlated."""
     values = np.concatenate(motions)
     scatter = values - values.mean()
     variance = float(scatter @ scatter)
@@ -123,7 +138,7 @@ def _error_of_blocks(motions: Sequence[Floats]) -> float:
     parts = np.split(scatter, len(motions))
     neighbours = sum(float(part[1:] @ part[:-1]) for part in parts)
     pairs = len(values) - len(motions)
-    # few blocks say little of their correlation, and their own mean takes some of it away
+    # few blocks show little of their correlation, and subtracting their own mean reduces it
     alike = min(max(neighbours / pairs * len(values) / variance + 1.0 / BLOCKS, 0.0), MOST_ALIKE)
     freedom = max(int((len(values) - 1) * (1.0 - alike) / (1.0 + alike)), 1)
     student = TWO_SIGMA[freedom] if freedom < len(TWO_SIGMA) else 2.0 * (1.0 + 1.3 / freedom)

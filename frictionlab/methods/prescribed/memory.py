@@ -34,21 +34,27 @@ from frictionlab.theory.rest import friction_at_rest
 from frictionlab.values.quantities import Floats
 
 PERIODS = 100
-"""For which a memory that does not forget is followed from each start."""
+"""Number of periods for which a memory that does not forget is followed from each start."""
 FORGETS = 1.0 - 1e-6
 """Largest multiplier of a memory that converges from every start."""
 MOST_CORNERS = 4
-"""Deflections whose starts are tried in all combinations; of more all one way and all the other."""
+"""Largest number of deflections whose starts are tried in all combinations of direction.
+
+If there are more, all deflections start in one direction, then all in the other."""
 INSIDE = 0.999
-"""Share of the deflection of steady sliding: at its very limit rounding decides whether an element yields."""
+"""Fraction of the deflection of steady sliding at which starts begin.
+
+At the limit itself rounding would decide whether an element yields."""
 ROUGH, FINE, SAME_MEAN = 1e-6, 1e-9, 1e-6
-"""Accuracies of maps by which starts are followed, over the normal load, and the spread of one mean by fine ones."""
+"""Accuracies of maps with which starts are followed, over the normal load, and largest range of equal means.
+
+The range is that of means found with fine maps."""
 HOLDS = "a deflection that never yields keeps what it began with"
 TWO_STARTS = "2 starts ended here, with no memory and with that of steady sliding"
 
 
 class MemoryPoint:
-    """One scene of prescribed slip, a law with memory, and the answer."""
+    """Scene of prescribed slip, law with memory, and the answer."""
 
     def __init__(self, scene: Scene, law: MemoryLaw, tolerance: float) -> None:
         self.motion, self.belt_speed = scene.motion(), scene.belt_speed
@@ -67,7 +73,7 @@ class MemoryPoint:
         self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
 
     def _swing(self) -> float:
-        """The speed of the oscillation, at most."""
+        """Return a bound on the speed of the oscillation."""
         if self.slip is not None:
             return self.slip.along.size() + self.slip.across.size()
         return abs(self.motion.velocity) + abs(self.motion.transverse_velocity)
@@ -80,8 +86,8 @@ class MemoryPoint:
         if not curve.closed.found[0] or not curve.reached[0] or multiplier > FORGETS:
             return self._followed(guess[0])
         if self.belt_speed == 0.0 and self.law.memory_kind == "deflections":
-            # No belt drags every slider: one that never yields keeps the deflection it began with. The mirror image
-            # of a state is a state half a period later.
+            # The belt is at rest: a slider that never yields keeps the deflection it began with. The mirror
+            # image of a state is a state half a period later.
             means = [float(curve.closed.mean[0]), *self._followed_from(self._corners(guess[0].size), FINE)]
             if self.slip is None and self.law.obeys("oddness"):
                 means += [-mean for mean in means]
@@ -103,7 +109,7 @@ class MemoryPoint:
         return curve
 
     def _followed(self, state: Floats) -> PrescribedMean:
-        """Where the memory goes from steady sliding in either direction, and from rest, which is kept."""
+        """Follow the memory from steady sliding in either direction, then from rest; keep the last state."""
         swing, starts = self._swing() + abs(self.belt_speed), []
         for side in (1.0, -1.0, 0.0):
             KernelCall(write_start)(self.maps, (0j, 0j, complex(side * swing)), state)
@@ -113,7 +119,7 @@ class MemoryPoint:
         )
 
     def _corners(self, size: int) -> list[Floats]:
-        """Starts in which each deflection is as in steady sliding one way or the other; the last from rest."""
+        """Return starts with deflections as in steady sliding in either direction; the last is from rest."""
         sides = np.empty((3, size))
         for row, side in enumerate((1.0, -1.0, 0.0)):
             KernelCall(write_start)(self.maps, (0j, 0j, complex(side * self._swing())), sides[row])
@@ -127,9 +133,10 @@ class MemoryPoint:
         return [*corners, sides[2]]
 
     def _followed_from(self, starts: list[Floats], accuracy: float = ROUGH) -> list[float]:
-        """Mean of the last period from each start that comes to repeat; the state of the last one is kept.
+        """Return the mean of the last period from each start; keep the state reached from the last start.
 
-        A state that comes back after two periods stands at a limit, where rounding decides whether it yields.
+        A start is left out if its state repeats only after two periods or more: it is then at a limit, where
+        rounding decides whether an element yields.
         """
         means: list[float] = []
         for start in starts:
@@ -153,11 +160,11 @@ class MemoryPoint:
         return PrescribedMean(low=low, high=high)
 
     def orbit(self) -> Orbit | None:
-        """One period of the prescribed motion, and the friction along it."""
+        """Return one period of the prescribed motion with its friction; None if the memory was not found."""
         return None if self.curve is None else self._recorded(self.curve.states)
 
     def orbit_from_rest(self) -> Orbit | None:
-        """The same where the mean depends on the start: of a memory that was followed from rest."""
+        """Return the orbit of the memory followed from rest, if the mean depends on the start; else None."""
         return None if self.from_rest is None else self._recorded(self.from_rest[None])
 
     def _recorded(self, states: Floats) -> Orbit:
@@ -170,9 +177,10 @@ class MemoryPoint:
 
 
 def driven(motion: Motion, zero: complex) -> BodyNumbers:
-    """A body that does what is prescribed; its spring and dashpot only tell a state's units.
+    """Return a body whose motion is prescribed; its spring and dashpot only give the units of a state.
 
-    A sine is its reference motion. Of any other slip the body stays where it is, and the belt goes the other way.
+    A sine is the reference motion of the body. For any other slip the body stays at rest, and the belt moves
+    with the opposite velocity.
     """
     omega, across, varying = motion.frequency, motion.transverse_velocity, _moved_belt(motion.varying, zero)
     share = 0.0 if varying else 1.0 / omega
@@ -199,7 +207,7 @@ def driven(motion: Motion, zero: complex) -> BodyNumbers:
 
 
 def _moved_belt(varying: Any, zero: complex) -> Any:
-    """What varies, where the belt moves instead of the body."""
+    """Return the time-varying parts of a motion with the motion of the belt in place of that of the body."""
     if not varying:
         return varying
     moved = varying._replace(belt=varying.belt.scaled(-1.0))

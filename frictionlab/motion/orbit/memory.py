@@ -24,8 +24,7 @@ from frictionlab.values.quantities import Floats
 _SAME = 1e-6
 """Largest difference between friction of a memory and recorded friction, relative to the largest recorded."""
 _STEEP = 1e-3
-"""Smallest slope of friction over deflection, relative to that at rest, at which friction gives the
-deflection."""
+"""Smallest slope of friction over deflection, relative to that at rest, that gives the deflection."""
 _CLOSED = 1e-9
 """Largest change over a period, relative to the memory, at which the memory repeats."""
 _SETTLED = 1e-11

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -51,6 +51,13 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
     else:
         found = _comparison(expectation, rows)
     return Verdict(found.passed, f"{_about(expectation)}: {found.sentence}")
+
+
+def expected_failures(expectations: Iterable[Expectation], table: pd.DataFrame) -> int:
+    """Count the failed rows that a study expects to fail."""
+    failed = table[table["status"] == "failed"]
+    expected = [_matching(each.where, failed).index for each in expectations if each.status == "failed"]
+    return len(set().union(*expected))
 
 
 def _matching(where: dict[str, WhereValue], table: pd.DataFrame) -> pd.DataFrame:

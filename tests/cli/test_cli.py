@@ -424,6 +424,15 @@ def test_points_that_fail_are_code_3(frictionlab: Any, monkeypatch: Any) -> None
     assert "coulomb, 1 failed at belt speed 4: ZeroDivisionError: float division by zero" in said.out
 
 
+def test_points_that_a_study_expects_to_fail_are_code_0(frictionlab: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr(Fake, "troubles", {4.0: breaks_down, 9.0: breaks_down})
+    expected = {"where": {"scene.belt_speed": 4}, "status": "failed"}
+
+    assert frictionlab("run", study(expect=[expected]), "-o", "one").code == 3
+    both = {"where": {"scene.belt_speed": [4, 9]}, "status": "failed"}
+    assert frictionlab("run", study(expect=[expected, both]), "-o", "both").code == 0
+
+
 def test_an_expectation_that_fails_is_code_3(frictionlab: Any) -> None:
     said = frictionlab("run", study(expect=[{"column": "mean_friction", "above": 9}]))
 

@@ -86,6 +86,11 @@ class Transient(NamedTuple):
     state: Floats
     seconds: float
 
+    def then(self, later: Transient) -> Transient:
+        """Join the motion that goes on from the end of this one."""
+        means, states = np.concatenate([self.means, later.means]), np.concatenate([self.states, later.states])
+        return Transient(later.period, means, states, later.state, self.seconds + later.seconds)
+
 
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""

@@ -404,8 +404,9 @@ class FollowedStarts:
             if led is not None:
                 self.reached.append(led)
                 return soon + periods
-            way = self._problem.carried(self._scene.belt_speed, way.state, self._patience - soon, known)
-            self.seconds += way.seconds
+            later = self._problem.carried(self._scene.belt_speed, way.state, self._patience - soon, known)
+            self.seconds += later.seconds
+            way = way.then(later)
         beside = (one for one in self.known if ends_on(way.state, way.period, one))
         found = first if way.period == ARRIVED else next(beside, None)
         if found is None:

@@ -6,7 +6,7 @@ such a leap and on the way measure its error, which chooses H. With H = 1 the le
 number of maps depends on how often the motion bends, not on how many periods it takes.
 
 Licence, measured on a body under a plate that vibrates at 26 kHz (LuGre, multipliers within 4e-4 of one):
-starts end after some 150 maps; 7,000 maps period by period leave 8 of 9 starts open
+starts end after 77 to 89 maps; 7,000 maps period by period leave 8 of 9 starts open
 (tests/methods/shooting/test_leaps.py).
 """
 

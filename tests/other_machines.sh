@@ -5,8 +5,8 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 python=.venv/bin/python
-numbers=(tests/{bench,compile,dynamics,fitting,golden,laws,least_model,methods,numerics,onsets,orbit,response,runner}
-  tests/{sensitivity,shape,study,theory} tests/test_{docstrings,studies,ten_jobs,pages}.py plugins)
+numbers=(tests/{analysis,bench,compile,curves,golden,laws,methods,motion,runner,study,theory,values}
+  tests/test_{docstrings,studies,ten_jobs,pages}.py plugins)
 above_the_least=$($python -c '
 from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 print(*(name for name in __cpu_dispatch__ if __cpu_features__[name]))')

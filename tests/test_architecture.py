@@ -39,3 +39,12 @@ def test_a_room_stands_above_all_it_imports() -> None:
     height = floors(drawn)
 
     assert all(height[above] > height[below] for above, rooms in drawn.items() for below in rooms)
+
+
+def test_the_tests_run_as_other_machines_round_are_there() -> None:
+    named = (architecture.PROJECT / "tests" / "other_machines.sh").read_text().partition("numbers=(")[2]
+    folders = re.findall(r"tests/\{([\w,]+)\}", named.partition(")")[0])[0].split(",")
+
+    assert [
+        each for each in folders if not list((architecture.PROJECT / "tests" / each).glob("**/test_*.py"))
+    ] == []

@@ -23,7 +23,7 @@ LIMITS = {
     "testing": 1497,
     "theory": 924,
     "values": 1375,
-    "tests": 29607,
+    "tests": 29613,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -268,7 +268,7 @@ class SteadyStates:
                 self._add(i, CARRIED.format(periods * self.problem.common))
             statistical = self.status[i] == "ok" and self.error_kind[i] == STATISTICAL
             if statistical and not is_earned(error, law, tolerance):
-                said = f"{self.reason[i]} {too_wide(self.mean[i].real, error)}"
+                said = f"{self.reason[i]}; {too_wide(self.mean[i].real, error)}"
                 self._clear(i)
                 self.reason[i] = said
             if self.status[i] == "ok" and not error <= tolerance and not statistical:

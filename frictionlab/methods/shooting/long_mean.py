@@ -70,7 +70,7 @@ def is_earned(error: float, law: FrictionLaw, tolerance: float) -> bool:
 
 def too_wide(mean: float, error: float) -> str:
     """Return why a long mean is not reported."""
-    return f"is known to be {mean:.4g} +- {error:.2g} only, which is no answer"
+    return f"the mean is known to be {mean:.4g} +- {error:.2g} only, which is no answer"
 
 
 def birkhoff_mean(values: Floats) -> float:

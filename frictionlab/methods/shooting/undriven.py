@@ -480,7 +480,7 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
             continue
         if motion.long is not None and not is_earned(motion.error, law, tolerance):
             said = motion.long.sentence(motion.turns, FREE)
-            reason[i] = f"{said} {too_wide(motion.mean, motion.error)}"
+            reason[i] = f"{said}; {too_wide(motion.mean, motion.error)}"
             continue
         found[i] = undriven, motion
         status[i], model[i], kind[i] = "ok", motion.kind, "estimated"

@@ -15,7 +15,7 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
-from frictionlab.methods.periodic.continuation import Curve
+from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS, Curve
 from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, along_the_belt, largest_modulus
 from frictionlab.methods.shooting.leaps import Leaper
@@ -44,10 +44,6 @@ ONE_BRANCH = 1e-3
 """Largest distance, over their size, at which orbits of neighbouring belt speeds count as one orbit.
 
 Belt speed moves such an orbit."""
-LONGEST_LEAP = 1_000_000_000
-"""Largest number of periods of one leap."""
-CLOSED_FROM = 0.05
-"""Step of Newton's method, over the size of a state, from which an orbit is closed beside a motion."""
 FEWEST, MOST = 200, 20_000
 """Smallest and largest number of periods for which a start is followed."""
 DECAYS, CLIMBS = 30.0, 2.0
@@ -340,6 +336,34 @@ def all_starts(
     return [*first, *([] if smooth in first else [smooth])], [*others, *resting_starts(scene, law, more)]
 
 
+@dataclass(frozen=True)
+class DrivePeriods:
+    """Map of a driven motion over one period of all that varies, as leaps ask for it."""
+
+    problem: PeriodicProblem
+    belt_speed: float
+
+    @property
+    def noise(self) -> float:
+        """Error of a map."""
+        return FINE * self.problem.mass.normal_load
+
+    def size(self, state: Floats) -> float:
+        """Return the size of a state."""
+        return float(np.linalg.norm(state))
+
+    def mapped(self, states: Floats) -> Floats:
+        """Return the images of states [count, size]."""
+        return self.problem.mapped(np.full(len(states), self.belt_speed), states)
+
+    def derivative(self, state: Floats) -> Floats:
+        """Return the monodromy matrix at a state."""
+        problem, speeds = self.problem, np.array([self.belt_speed])
+        curve, _ = problem.called(speeds, state[None].copy(), problem.goal, MULTIPLIERS)
+        matrix: Floats = curve.matrices[0]
+        return matrix
+
+
 class FollowedStarts:
     """Starts at one belt speed, their destinations, and the kernel time.
 
@@ -420,21 +444,16 @@ class FollowedStarts:
 
     def _led(self, state: Floats) -> tuple[Attractor | None, int]:
         """Return the closed one-period orbit to which leaps lead from a state, or None, and the periods."""
-        leaper = Leaper(self._problem, self._scene.belt_speed, state, LONGEST_LEAP)
-        set_out, tried = state, math.inf
-        while (newton := leaper.leap()) is not None:
-            size = float(np.linalg.norm(leaper.state))
-            left = float(np.linalg.norm(newton))
-            if left < CLOSED_FROM * size and left < 0.3 * tried:
-                tried = left
-                self._close_beside(leaper.state)
-            for one in self.known:
-                if one.period != 1 or one.curve is None or not one.known.gap > 0.0:
-                    continue
-                away, before = (float(np.linalg.norm(at - one.known.state)) for at in (leaper.state, set_out))
-                if away <= max(0.1 * before, 1e-3 * size) and leaper.ends_on(one.known):
-                    return one, leaper.periods
-        return None, 0
+        leaper = Leaper(DrivePeriods(self._problem, self._scene.belt_speed), state)
+        orbits: dict[int, Attractor] = {}
+
+        def known() -> list[KnownOrbit]:
+            repeating = [one for one in self.known if one.period == 1 and one.curve is not None]
+            orbits.update({id(one.known): one for one in repeating})
+            return [one.known for one in repeating]
+
+        found = leaper.lead(known, self._close_beside)
+        return (None, 0) if found is None else (orbits[id(found)], leaper.periods)
 
     def _close_beside(self, state: Floats) -> None:
         """Add the closed orbit of one period beside a state to those known."""

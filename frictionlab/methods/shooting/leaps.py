@@ -13,13 +13,13 @@ starts end after 77 to 89 maps; 7,000 maps period by period leave 8 of 9 starts 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from frictionlab.methods.periodic.attraction import KnownOrbit
-from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS
-from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.values.quantities import Floats
 
 MOST_MAPS = 1000
@@ -36,24 +36,65 @@ OBEYED = 0.1
 """Largest error of the affine map there, over the change by a map."""
 
 
+LONGEST = 1_000_000_000
+"""Largest number of maps of one leap."""
+CLOSED_FROM = 0.05
+"""Step of Newton's method, over the size of a state, from which an orbit is closed beside a motion."""
+
+
+class Section(Protocol):
+    """Map of a motion from one section to the next: a period of the drive, or a passage of a level."""
+
+    @property
+    def noise(self) -> float:
+        """Error of a map."""
+
+    def size(self, state: Floats) -> float:
+        """Return the size of what moves in a state."""
+
+    def mapped(self, states: Floats) -> Floats:
+        """Return the images of states [count, size]; NaN where there is none."""
+
+    def derivative(self, state: Floats) -> Floats:
+        """Return the derivative of the map at a state."""
+
+
 @dataclass
 class Leaper:
-    """Motion at one belt speed that is led on by leaps.
+    """Motion that is led on by leaps.
 
-    state: state reached so far. longest: most periods of one leap. periods: periods passed so far. maps: true
-    maps made so far, including those for derivatives.
+    state: state reached so far. periods: maps passed so far. maps: true maps made so far, including those for
+    derivatives.
     """
 
-    problem: PeriodicProblem
-    belt_speed: float
+    section: Section
     state: Floats
-    longest: int
     periods: int = 0
     maps: int = 0
 
     def __post_init__(self) -> None:
         self._length = 2 * self._fewest
-        self._size = float(np.linalg.norm(self.state)) + abs(self.belt_speed)
+        self._size = self.section.size(self.state)
+
+    def lead(
+        self, known: Callable[[], Sequence[KnownOrbit]], close_beside: Callable[[Floats], object]
+    ) -> KnownOrbit | None:
+        """Lead the motion on to the known orbit where it ends; None where leaps no longer pay.
+
+        known: orbits known so far, to which ``close_beside`` may add the one beside a state.
+        """
+        set_out, tried = self.state, math.inf
+        while (newton := self.leap()) is not None:
+            size, left = self.section.size(self.state), float(np.linalg.norm(newton))
+            if left < CLOSED_FROM * size and left < 0.3 * tried:
+                tried = left
+                close_beside(self.state)
+            for orbit in known():
+                away, before = (float(np.linalg.norm(at - orbit.state)) for at in (self.state, set_out))
+                near = orbit.gap > 0.0 and away <= max(0.1 * before, 1e-3 * size)
+                if near and self.ends_on(orbit):
+                    return orbit
+        return None
 
     @property
     def _fewest(self) -> int:
@@ -66,7 +107,7 @@ class Leaper:
         Return Newton's step from the state before the leap; None if a leap no longer pays.
         """
         base = self._mapped(self.state[None])[0] - self.state
-        matrix = self._derivative(self.state)
+        matrix = self._derivative()
         length = self._within_growth(matrix)
         while length >= self._fewest and np.isfinite(matrix).all() and self.maps < MOST_MAPS:
             moved, error, defect = self._tried(matrix, base, length)
@@ -75,8 +116,8 @@ class Leaper:
             if ratio <= 1.0:
                 self.state = self.state + moved + defect / 3.0  # one order more
                 self.periods += length
-                self._size = max(self._size, float(np.linalg.norm(self.state)))
-                self._length = int(min(self.longest, length * min(8.0, 0.9 * max(ratio, 1e-6) ** (-1 / 3))))
+                self._size = max(self._size, self.section.size(self.state))
+                self._length = int(min(LONGEST, length * min(8.0, 0.9 * max(ratio, 1e-6) ** (-1 / 3))))
                 return _newton(matrix, base)
             length = int(length * max(0.1, 0.8 * ratio ** (-1 / 3))) if math.isfinite(ratio) else length // 10
         return None
@@ -86,7 +127,7 @@ class Leaper:
         away = self.state - orbit.state
         # distances below the error of the orbit itself, measured by a fine map, cannot be told apart
         off = float(np.linalg.norm(self._mapped(orbit.state[None])[0] - orbit.state))
-        noise = 2.0 * off + FINE * self.problem.mass.normal_load
+        noise = 2.0 * off + self.section.noise
         steps = _spread(orbit.monodromy)
         powers = [np.linalg.matrix_power(orbit.monodromy, step) for step in steps]
         places = np.array([orbit.state + power @ away for power in powers])
@@ -122,14 +163,11 @@ class Leaper:
 
     def _mapped(self, states: Floats) -> Floats:
         self.maps += len(states)
-        return self.problem.mapped(np.full(len(states), self.belt_speed), states)
+        return self.section.mapped(states)
 
-    def _derivative(self, state: Floats) -> Floats:
-        self.maps += 2 * state.size
-        known = state[None].copy()
-        curve, _ = self.problem.called(np.array([self.belt_speed]), known, self.problem.goal, MULTIPLIERS)
-        matrix: Floats = curve.matrices[0]
-        return matrix
+    def _derivative(self) -> Floats:
+        self.maps += 2 * self.state.size
+        return self.section.derivative(self.state)
 
 
 def power_sum(matrix: Floats, length: int) -> tuple[Floats, Floats]:

@@ -1,16 +1,16 @@
-"""The motion of an undriven mass, span by span, and its largest deflections.
+"""Motion of an undriven mass: spans of it, its passages of a level, and the cycle next to a passage.
 
-The cycle next to a largest deflection, by Newton's method on the map from one largest deflection to the next.
-
-The velocity is zero there, and what the motion lacks of it after a period is made up for by a change of the period.
+An oscillation passes the middle of its swing at its fastest. From one such passage against the belt to the next
+the motion is a map, however long that takes. Newton's method closes a cycle of this map, with the period as one
+more unknown.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, stated_error
-from frictionlab.methods.periodic.period_map import start_of, whole_size_of
+from frictionlab.methods.periodic.period_map import start_of, unit_of_scalars, whole_size_of
 from frictionlab.methods.periodic.setting import Maps, Setting, recorded_map, table_of_maps
 from frictionlab.motion.equation import (
     START,
@@ -37,36 +37,32 @@ from frictionlab.motion.orbit.recorder import Track, track_of
 from frictionlab.scene.body import BodyNumbers, Mass, on_the_line
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
-from frictionlab.theory.sliding_stability import steady_deflection
+from frictionlab.theory.sliding_stability import loses_energy, steady_deflection
 from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
 TURN = 2.0 * math.pi
 """The period of the free mass."""
-FOLLOWED, QUOTIENTS, LEAST = 1e-8, 1e-11, 1e-14
-"""Accuracies of maps, per normal load: of those that follow the motion, of those for difference quotients, and the
-one beyond which rounding decides."""
+FOLLOWED, ROUGH, QUOTIENTS, LEAST = 1e-8, 1e-9, 1e-11, 1e-14
+"""Accuracies of maps, per normal load: of those that follow the motion, of those for difference quotients on the way
+and in the end, and the one beyond which rounding decides."""
 SHIFTED = 1e-4
 """Share of a state by which it is shifted for a difference quotient."""
+SHORT, LITTLE_LEFT = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5), 0.2
+"""Turns over which growth is a quotient: the first in which no more of a distance is lost than down to this share."""
 SPEEDING_UP = 1e-12
 """Time after which a start is seen that has no acceleration: slip has a direction by then."""
 MOST_WORK = 2_000_000
 """Steps after which no motion is followed any longer, some seconds of them."""
-MOST_CLOSING = MOST_WORK // 2
-"""Of these, steps after which no cycle is looked for any longer: a motion that goes on is averaged."""
-PANELS_AT_FIRST = 128
-"""Panels that a track has room for at first."""
-MOST_PEAKS = 8
-"""Largest deflections that are looked for in one span."""
+PANELS_AT_FIRST, MOST_PANELS = 128, 131072
+"""Panels that a track has room for at first, and the most."""
 
 
 @dataclass
 class Effort:
-    """What following a motion has taken so far [steps], and closing cycles of that, how far it has led [turns], and
-    kernel time [s]."""
+    """What following a motion has taken so far [steps], how far it has led [turns], and kernel time [s]."""
 
     work: int = 0
-    closing: int = 0
     turns: float = 0.0
     seconds: float = 0.0
 
@@ -100,20 +96,13 @@ def follow_undriven(
     setting, end, track = Setting(maps, belt_speed, turns), np.empty(state.size), track_of(room)
     image = recorded_map(setting, state, end, accuracy, track)
     # how many panels there are is known once they are written: a full track may lack some
-    while 0 < track.stick.size == track.filled[0]:
+    while 0 < track.stick.size == track.filled[0] < MOST_PANELS:
         track = track_of(4 * track.stick.size)
         image = recorded_map(setting, state, end, accuracy, track)
     for row in range(state.size):
         end[row] = state[row] + end[row]
     rests = image.stuck, image.released
     return Span(end, image.friction_impulse.real, *rests, image.closest, image.steps, track)
-
-
-class Return(NamedTuple):
-    """A largest deflection, and when it was reached [turns]."""
-
-    state: Floats
-    turns: float
 
 
 @dataclass(frozen=True)
@@ -200,6 +189,40 @@ class UndrivenPath:
         """Distance to steady sliding."""
         return float(np.linalg.norm(state - self.sliding))
 
+    @cached_property
+    def growth(self) -> float:
+        """Largest growth rate of a small distance to steady sliding [1/time], from quotients over a short time."""
+        for turns in SHORT:
+            matrix = self.quotients(self.sliding, partial(self._after, turns))
+            multipliers = np.abs(np.linalg.eigvals(matrix))
+            if multipliers.min() > LITTLE_LEFT:
+                break
+        return float(np.log(multipliers.max())) / (turns * TURN)
+
+    def _after(self, turns: float, state: Floats) -> Floats:
+        return np.asarray(self.follow(state, turns, QUOTIENTS).end)
+
+    def quotients(self, state: Floats, image: Callable[[Floats], Floats], first: int = 0) -> Floats:
+        """Return the derivative of an image at a state by its numbers from ``first`` on. Raises NotFound."""
+        whole = np.zeros((self.size, self.size))
+        for row, shift in list(enumerate(self.shifts(state)))[first:]:
+            step = np.zeros(self.size)
+            step[row] = shift
+            ahead, behind = image(state + step), image(state - step)
+            if (
+                np.isnan(ahead).any() != np.isnan(behind).any()
+            ):  # a motion on one side alone goes on like this one
+                here = image(state)
+                ahead = 2.0 * here - behind if np.isnan(ahead).any() else ahead
+                behind = 2.0 * here - ahead
+            whole[:, row] = (ahead - behind) / (2.0 * shift)
+        return whole
+
+    def loses_energy(self, state: Floats) -> bool:
+        """Check that every motion with no more energy than this one loses it, down to steady sliding."""
+        linear = self.law.count() == 0 and not self.mass.bends and not self.scene.remembers
+        return linear and loses_energy(self.mass, self.law, self.speed, self.from_sliding(state))
+
     # --- the motion ---
 
     def follow(self, state: Floats, turns: float, accuracy: float = FOLLOWED, room: int = 0) -> Span:
@@ -228,96 +251,258 @@ class UndrivenPath:
             f"with velocity {state[1]:.6g}"
         )
 
-    def quotients(self, state: Floats, turns: float) -> Floats:
-        """The derivative of the state after so many turns by the one before. Raises NotFound."""
-        columns = []
-        for row, shift in enumerate(self._shifts(state)):
-            step = np.zeros(self.size)
-            step[row] = shift
-            ahead, behind = (self.follow(state + part, turns, QUOTIENTS).end for part in (step, -step))
-            columns.append((ahead - behind) / (2.0 * shift))
-        return np.array(columns).T
-
-    def _shifts(self, state: Floats) -> Floats:
-        """Small against what a state is, and against what it is away from steady sliding."""
-        far = np.abs(self.sliding) + np.abs(state - self.sliding) + SHIFTED * abs(self.speed)
-        far[1] = abs(self.speed)
-        if self.law.count() == 0:  # friction jumps where slip turns round, and only there
+    def shifts(self, state: Floats) -> Floats:
+        """Return shifts small against what a state is, and against what it is away from steady sliding."""
+        far = np.abs(self.sliding) + np.abs(state - self.sliding)
+        far[1] = abs(state[1] - self.speed)  # friction jumps where slip turns round, and only there
+        if self.law.count() == 0:
             far[0] = far[1]
+        if self.law.memory_kind == "scalars":  # coordinates that are logarithms where they are small
+            unit = float(interpreted(unit_of_scalars)(self.law, self._body, 0.0))
+            far[2:] = np.maximum(np.abs(state[2:]), unit)
+        far[far == 0.0] = far.max()
         shifts: Floats = SHIFTED * far
         return shifts
 
-    # --- largest deflections ---
 
-    def peaks(self, state: Floats, track: Track, middle: float) -> Iterator[Return]:
-        """The largest deflections in the motion from a state, those beyond the middle. Raises NotFound."""
-        filled = track.filled[0]
-        tau, v = track.tau[:filled].ravel() / TURN, self.side * track.v.real[:filled].ravel()
-        beyond = self.side * (track.x.real[:filled].ravel() - middle) > 0.0
-        for i in np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0) & beyond[1:])[:MOST_PEAKS]:
-            first = self.follow(state, tau[i]).end if tau[i] > 0.0 else state
-            peak = self._peak(first, tau[i + 1] - tau[i])
-            yield Return(peak.state, float(tau[i]) + peak.turns)
+# --- from passage to passage ----------------------------------------------------------------------------------------
 
-    def _peak(self, first: Floats, within: float) -> Return:
-        """The largest deflection within so many turns from a state that nears it."""
+FIRST_SPAN, LONGEST = 2.0, 1e15
+"""Turns of the first span in which a passage is looked for, and turns without one after which none is."""
+SHORTER = 0.25
+"""Of a span with too many panels, followed anew."""
+BEFORE = 0.9
+"""Turns of the first span of a passage, over those of the last passage: what comes behind is followed twice."""
+BESIDE = 1e-3
+"""Distance from which a motion that nears steady sliding ends there, over the speed of the belt and over friction."""
+FRICTION_SPREAD = 1e-4
+"""Largest distance of friction from that of sliding, over it, of a motion that nothing else brakes."""
+SWINGS_BESIDE, PATIENCE = 3, 4.0
+"""Largest deflections without a passage between them after which the level moves to their middle, if none has come
+for so many times as the last took."""
+WELL_WITHIN = 0.1
+"""Share of a swing by which the level lies within it."""
+LOST = 1e3
+"""Distance to steady sliding at which nothing is known of the direction, over the error of a map."""
+AT_LEVEL = 1e-3
+"""Largest distance from the level, over the error of a map."""
+
+
+class Passage(NamedTuple):
+    """Passage of the level against the belt, and the motion since the one before.
+
+    turns, impulse: duration, and integral of friction. low, high: smallest and largest deflection along the belt.
+    fastest: quickest slip.
+    """
+
+    state: Floats
+    turns: float
+    impulse: float
+    low: float
+    high: float
+    fastest: float
+
+
+class Settled(NamedTuple):
+    """Motion that passes no more: it ends in steady sliding, or swings ``freely`` about it."""
+
+    state: Floats
+    freely: bool
+
+
+@dataclass
+class Passages:
+    """Map of a motion from one passage of the level to the next.
+
+    level: position along the belt; that of steady sliding at first. conserves: whether nothing but friction other
+    than that of sliding takes energy.
+    """
+
+    path: UndrivenPath
+    accuracy: float
+    conserves: bool = False
+
+    def __post_init__(self) -> None:
+        self.level = self.path.side * float(self.path.sliding[0]) / self._root
+        self._guess = FIRST_SPAN
+
+    @property
+    def _root(self) -> float:
+        return math.sqrt(self.path.mass.stiffness)
+
+    @property
+    def noise(self) -> float:
+        """Error of a map."""
+        return self.accuracy * self.path.mass.normal_load
+
+    def size(self, state: Floats) -> float:
+        """Return the distance of a state to steady sliding."""
+        return self.path.from_sliding(state)
+
+    def mapped(self, states: Floats) -> Floats:
+        """Return the next passage of each state; NaN where there is none."""
+        found = np.full_like(states, math.nan)
+        for row in np.flatnonzero(np.isfinite(states).all(axis=1)):
+            end = self.next(states[row])
+            found[row] = end.state if isinstance(end, Passage) else math.nan
+        return found
+
+    def derivative(self, state: Floats, passages: int = 1, accuracy: float = ROUGH) -> Floats:
+        """Return the derivative of the map of so many passages, by quotients; NaN where there is none."""
+
+        def image(start: Floats) -> Floats:
+            found = self.around(start, passages, min(accuracy, self.accuracy))
+            return np.full_like(start, math.nan) if found is None else found.state
+
+        return self.path.quotients(state, image, first=1)
+
+    def around(self, state: Floats, passages: int, accuracy: float) -> Passage | None:
+        """Return so many passages as one, by maps of an accuracy; None where there are fewer. The level stays."""
+        map_, found = replace(self, accuracy=accuracy), list[Passage]()
+        map_.level, map_._guess = self.level, self._guess
+        while len(found) < passages:
+            one = map_.next(found[-1].state if found else state)
+            if isinstance(one, Settled) or map_.level != self.level:
+                return None
+            found.append(one)
+        turns, impulse = sum(each.turns for each in found), sum(each.impulse for each in found)
+        return found[-1]._replace(turns=turns, impulse=impulse)
+
+    def next(self, state: Floats) -> Passage | Settled:
+        """Follow a motion to its next passage; where it swings beside the level, move that. Raises NotFound."""
+        path, turns, impulse, length = self.path, 0.0, 0.0, BEFORE * self._guess
+        low, high, fastest, spread, rises = math.inf, -math.inf, 0.0, 0.0, False
+        while turns < LONGEST:
+            span = path.follow(state, length, self.accuracy, PANELS_AT_FIRST)
+            if span.track.filled[0] == MOST_PANELS:
+                length *= SHORTER
+                continue
+            tau, x, v = self._along(span.track)
+            found = self._first_passage(x, v, rises)
+            spread = max(spread, self._friction_off_sliding(span.track))
+            if self.conserves and spread <= FRICTION_SPREAD and (found >= 0 or turns + length >= 1.0):
+                return Settled(span.end, True)
+            till = slice(0, found + 1) if found >= 0 else slice(None)
+            low, high = min(low, x[till].min()), max(high, x[till].max())
+            fastest = max(fastest, np.abs(v[till] - abs(path.speed)).max())
+            if found >= 0:
+                before = path.follow(state, tau[found], self.accuracy) if tau[found] > 0.0 else None
+                end, late = self._at_level(before.end if before else state, tau[found + 1] - tau[found])
+                turns += tau[found] + late
+                impulse += end.impulse + (before.impulse if before else 0.0)
+                self._guess = turns
+                if self._stays(state, end.end):
+                    return Settled(end.end, False)
+                return Passage(end.end, turns, impulse, float(low), float(high), float(fastest))
+            if self._stays(state, span.end):
+                return Settled(span.end, False)
+            tops = np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0))
+            if len(tops) >= SWINGS_BESIDE and turns > PATIENCE * self._guess:
+                self.level = 0.5 * float(x[tops[0] :].min() + x[tops[0] :].max())
+            rises = rises or bool((v > 0.0).any())
+            state, turns, impulse = span.end, turns + length, impulse + span.impulse
+            # as long as the last passage took, and a little: then ever longer
+            length = 2.0 * length if turns > self._guess else (1.05 - BEFORE) * self._guess
+        raise NotFound(f"no steady state within {turns:.0e} periods: {path.whereabouts(state)}")
+
+    def center(self, last: Passage) -> bool:
+        """Move the level to the middle of the last swing, unless it is well within; return whether it moved."""
+        room = WELL_WITHIN * (last.high - last.low)
+        if last.low + room < self.level < last.high - room:
+            return False
+        self.level = 0.5 * (last.low + last.high)
+        return True
+
+    def _along(self, track: Track) -> tuple[Floats, Floats, Floats]:
+        """Return the times of a track, and position and velocity along the belt."""
+        filled, side = track.filled[0], self.path.side
+        tau, x, v = (part[:filled].ravel() for part in (track.tau, track.x.real, track.v.real))
+        return tau / TURN, side * x, side * v
+
+    def _first_passage(self, x: Floats, v: Floats, rises: bool) -> int:
+        """Return the node before the first passage after a motion along the belt; -1 for none."""
+        rising = [0] if rises else np.flatnonzero(v > 0.0)
+        falls = np.flatnonzero((x[:-1] > self.level) & (x[1:] <= self.level) & (v[1:] < 0.0))
+        falls = falls[falls >= rising[0]] if len(rising) else falls[:0]
+        return int(falls[0]) if len(falls) else -1
+
+    def _at_level(self, first: Floats, within: float) -> tuple[Span, float]:
+        """Return the span from a state to the level, which it reaches within so many turns, and its turns."""
         # Illinois: of the false positions, the end that stays is given half its weight
-        low, high, below, above = 0.0, within, self.side * first[1], math.nan
-        at, end = within, first
-        for _ in range(30):
-            end = self.follow(first, at).end
-            if abs(end[1]) <= FOLLOWED * abs(self.speed) or high - low < 1e-12:
-                break
-            if self.side * end[1] > 0.0:
-                low, below, above = at, self.side * end[1], 0.5 * above
+        level, side = self.level * self._root, self.path.side
+        low, high, below, above, at = 0.0, within, side * float(first[0]) - level, math.nan, within
+        while True:
+            end = self.path.follow(first, at, self.accuracy)
+            left = side * float(end.end[0]) - level
+            if abs(left) <= AT_LEVEL * self.noise or high - low <= 1e-14 * (1.0 + within):
+                end.end[0] = side * level
+                return end, at
+            if left > 0.0:
+                low, below, above = at, left, 0.5 * above
                 high = max(high, 1.01 * at)  # the end of the track was that of other steps
             else:
-                high, above, below = at, self.side * end[1], 0.5 * below
+                high, above, below = at, left, 0.5 * below
             at = (low * above - high * below) / (above - below) if above < 0.0 else high
-        return Return(end, float(at))
+
+    def _friction_off_sliding(self, track: Track) -> float:
+        """Return the largest distance of friction from that of sliding, over it."""
+        friction = -track.friction.real[: track.filled[0]]
+        return float(np.abs(friction / self.path.sliding_friction - 1.0).max())
+
+    def _stays(self, before: Floats, after: Floats) -> bool:
+        """Check that a motion ends in steady sliding: it nears it, and is so near that friction is linear."""
+        path = self.path
+        near = BESIDE * np.abs(path.sliding)
+        near[0] = BESIDE * path.mass.normal_load * abs(path.sliding_friction)
+        near[1] = BESIDE * abs(path.speed)
+        near[near == 0.0] = near[0]
+        if path.loses_energy(after):
+            return True
+        close = bool((np.abs(after - path.sliding) <= near).all())
+        away = path.from_sliding(after)
+        return close and path.growth < 0.0 and away <= max(path.from_sliding(before), LOST * self.noise)
 
 
+# --- cycles ---------------------------------------------------------------------------------------------------------
+
+REPELS = 1.05
+"""Multiplier of a cycle that surely repels."""
 COARSEST_CLOSED, OF_BELT_SPEED = 1e-6, 1e-5
 """The coarsest accuracy of maps that close a cycle, per normal load and per belt speed."""
-INSTANT = 1e-7
-"""Turns over which rates of a state are quotients."""
 MOST_NEWTON, MOST_DERIVATIVES = 16, 4
 """Steps of Newton's method, and how often derivatives are found anew for them."""
 CHANCE = 0.15
 """Of the difference between the two coarser means, stands in where the two finer agree by chance."""
-
-
+BESIDE_CYCLE = 3.0
+"""Distance of a motion to a cycle, over what is left of its way, up to which it may be on its way there."""
 RETURN_DISTANCE = 0.05
-"""How near to each other two largest deflections must come to close a cycle from them [distances to sliding]."""
+"""How near to its end a motion must come to close a cycle [distances to sliding]."""
 CONVERGED_DISTANCE, STRONGLY_DISTANCE = 1e-6, 3e-5
 """How near a motion must come to what attracts it to be there without further proof; and to what halves its distance
 each time, where the steps on the way may leave it farther off."""
-MOST_RETURNS = 4
-"""Largest deflections in one period."""
+MOST_RETURNS = 8
+"""Most passages in one period."""
 
 
 def nears(orbit: KnownOrbit, before: Floats, after: Floats) -> bool:
-    """Whether a motion comes nearer to an orbit from one state to another as the derivative there says."""
+    """Check that a motion comes nearer to an orbit from one state to another as the derivative there says."""
     predicted = np.empty(before.size)
     return bool(interpreted(obeys)(orbit, before - orbit.state, after - orbit.state, predicted))
 
 
-def is_there(orbit: KnownOrbit, state: Floats) -> bool:
-    """Whether a state is so near to an orbit that attracts that the motion ends on it."""
-    share = STRONGLY_DISTANCE if orbit.gap > 0.5 else CONVERGED_DISTANCE
-    near = share * (1.0 + float(np.linalg.norm(orbit.state)))
-    return bool(orbit.gap > CONVERGED_DISTANCE and float(np.linalg.norm(state - orbit.state)) < near)
-
-
 class Cycle(NamedTuple):
-    """A cycle from a largest deflection: its period [turns], mean friction and the error of that, and the derivative
-    from each largest deflection to the next."""
+    """Cycle from a passage: its period [turns], mean friction and the error of that.
+
+    matrix: derivative of the map of its passages. size: distance to steady sliding.
+    """
 
     state: Floats
     turns: float
     mean: float
     error: float
     matrix: Floats
+    passages: int
+    size: float
 
     @property
     def multiplier(self) -> float:
@@ -329,50 +514,47 @@ class Cycle(NamedTuple):
         """As kernels see it."""
         return KnownOrbit(self.state, self.matrix, 1.0 - self.multiplier)
 
-    def neared(self, returns: list[Return]) -> bool:
-        """Whether it attracts and the last period of a motion led to it, or nearer to it as its derivative says."""
-        orbit, last = self.orbit, returns[-1]
-        if not orbit.gap > CONVERGED_DISTANCE:
-            return False
-        if is_there(orbit, last.state):
-            return True
-        a_period_ago = [
-            one
-            for one in returns[-1 - MOST_RETURNS : -1]
-            if abs(last.turns - one.turns - self.turns) < RETURN_DISTANCE * self.turns
-        ]
-        return bool(a_period_ago) and nears(orbit, a_period_ago[-1].state, last.state)
+    def has(self, state: Floats) -> bool:
+        """Check that a state is so near to the cycle, which attracts, that the motion ends on it."""
+        gap = 1.0 - self.multiplier
+        share = STRONGLY_DISTANCE if gap > 0.5 else CONVERGED_DISTANCE
+        return bool(gap > CONVERGED_DISTANCE and np.linalg.norm(state - self.state) < share * self.size)
 
+    def is_beside(self, state: Floats, left: float) -> bool:
+        """Check that a motion that is so far from its end may be on its way to the cycle, or away from it."""
+        return bool(np.linalg.norm(state - self.state) < BESIDE_CYCLE * left)
 
-class Linear(NamedTuple):
-    """Rates of a largest deflection, the derivative from each to the next, and Newton's inverse of that."""
-
-    rates: Floats
-    matrix: Floats
-    inverse: Floats
+    def neared(self, passages: list[Passage]) -> bool:
+        """Check that the last period of a motion led to it, which attracts, or nearer as its derivative says."""
+        last = passages[-1].state
+        return self.has(last) or (
+            len(passages) > self.passages and nears(self.orbit, passages[-1 - self.passages].state, last)
+        )
 
 
 def radius(matrix: Floats) -> float:
-    """The largest modulus of the eigenvalues."""
+    """Return the largest modulus of the eigenvalues."""
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
-def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | None:
-    """The cycle near a largest deflection that comes back after about so many turns; None where none is found.
+def close_cycle(section: Passages, state: Floats, passages: int, tolerance: float) -> Cycle | None:
+    """Return the cycle of so many passages beside one; None where none is found. One that repels has no error.
 
     Its mean is that of the last of three or more closed cycles, each of maps FINER times finer than the one before.
     Raises NotFound.
     """
+    path = section.path
     coarsest = min(COARSEST_CLOSED, OF_BELT_SPEED * abs(path.speed) / path.mass.normal_load)
     accuracy, means, error = max(min(tolerance, coarsest), LEAST), list[float](), math.inf
-    state = guess.state.copy()
-    state[1] = 0.0
-    at = Cycle(state, guess.turns, math.nan, math.inf, np.empty((0, 0)))
-    linear = _linearize(path, at)
+    matrix = section.derivative(state, passages)
     while True:
-        found, linear = _newton(path, at, linear, accuracy)
+        found = _newton(section, state, passages, matrix, accuracy)
         if found is None:
             return None
+        if not means:
+            found = found._replace(matrix=section.derivative(found.state, passages))
+            if not found.multiplier < REPELS:
+                return found._replace(error=math.nan)
         means.append(found.mean)
         if len(means) > 2:
             changed = max(abs(means[-1] - means[-2]), CHANCE * abs(means[-2] - means[-3]))
@@ -380,57 +562,48 @@ def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | 
             error = interpreted(stated_error)(changed, 0.5 * found.error, steps)
         if error <= tolerance or accuracy <= LEAST:
             # derivatives that closed it are those of the guess, or of a step on the way
-            return found._replace(error=error, matrix=_linearize(path, found).matrix)
-        at, accuracy = found, max(accuracy / FINER, LEAST)
+            return found._replace(error=error, matrix=section.derivative(found.state, passages, QUOTIENTS))
+        state, matrix, accuracy = found.state, found.matrix, max(accuracy / FINER, LEAST)
 
 
-def close_shortest(path: UndrivenPath, guess: Return, loops: int, tolerance: float) -> Cycle | None:
-    """The same of a guess that goes from largest deflection to largest deflection so many times: where the cycle
-    found is a shorter one over again, that."""
-    found = close_cycle(path, guess, tolerance)
+def close_shortest(section: Passages, state: Floats, passages: int, tolerance: float) -> Cycle | None:
+    """Return the same; where it is a shorter cycle over again, the shorter."""
+    found = close_cycle(section, state, passages, tolerance)
     if found is None:
         return None
-    for parts in range(loops, 1, -1):
-        end = path.follow(found.state, found.turns / parts).end
-        if loops % parts == 0 and is_there(found.orbit, end):
-            return close_cycle(path, Return(found.state, found.turns / parts), tolerance)
+    for fewer in range(1, passages):
+        end = section.around(found.state, fewer, FOLLOWED) if passages % fewer == 0 else None
+        if end is not None and found.has(end.state):
+            return close_cycle(section, found.state, fewer, tolerance)
     return found
 
 
-def _newton(path: UndrivenPath, at: Cycle, linear: Linear, accuracy: float) -> tuple[Cycle | None, Linear]:
-    """The cycle by maps of one accuracy, its error what the last step has moved the mean by; the derivatives used."""
-    (state, turns, mean, _, _), size, derivatives = at, math.inf, 0
+def _newton(section: Passages, state: Floats, passages: int, matrix: Floats, accuracy: float) -> Cycle | None:
+    """Return the cycle by maps of one accuracy, its error what the last step has moved the mean by.
+
+    matrix: derivative of the map, which is made anew where steps shrink too slowly.
+    """
+    path, mean, size, derivatives = section.path, math.nan, math.inf, 0
+    noise, far = accuracy * path.mass.normal_load, path.from_sliding(state)
     for count in range(MOST_NEWTON):
-        span = path.follow(state, turns, accuracy)
-        before, mean = mean, float(interpreted(mean_friction)(span.impulse, turns * TURN))
-        # along the motion, until the velocity is zero
-        late = -float(span.end[1] / linear.rates[1])
-        step = linear.inverse @ (span.end + late * linear.rates - state)
-        step[1] = 0.0
-        # as a way in the states: where the motion lingers at its largest deflection, the instant is hardly known
-        last, size = size, float(np.abs(step).max() + abs(late) * np.abs(linear.rates).max())
-        if not size < 1.0 + np.abs(state).max():
-            break
+        image = section.around(state, passages, accuracy)
+        if image is None or not np.isfinite(matrix).all():
+            return None
+        before, mean = mean, float(interpreted(mean_friction)(image.impulse, image.turns * TURN))
+        step = np.linalg.pinv(np.eye(path.size) - matrix) @ (image.state - state)
+        last, size = size, float(np.abs(step).max())
+        if not size < far:
+            return None
         # steps that shrink no more are what the steps of a map jump about by
-        if count > 0 and size <= 1e3 * accuracy and (size <= accuracy or size > 0.3 * last):
+        if count > 0 and size <= 1e3 * noise and (size <= noise or size > 0.3 * last):
             # steady sliding comes back after any time, and motions next to it nearly do
-            apart = path.from_sliding(state) > 1e3 * (size + accuracy)
-            return Cycle(state, turns, mean, abs(mean - before), linear.matrix) if apart else None, linear
-        state, turns = state + step, turns + late / TURN
-        if not turns > 0.0:
-            break
+            away = path.from_sliding(state)
+            found = Cycle(state, image.turns, mean, abs(mean - before), matrix, passages, away)
+            return found if away > 1e3 * (size + noise) else None
+        state = state + step
         if size > 0.3 * last:
             derivatives += 1
             if derivatives > MOST_DERIVATIVES:
-                break
-            linear = _linearize(path, at._replace(state=state, turns=turns))
-    return None, linear
-
-
-def _linearize(path: UndrivenPath, at: Cycle) -> Linear:
-    rates: Floats = (path.follow(at.state, INSTANT, LEAST).end - at.state) / (INSTANT * TURN)
-    whole = path.quotients(at.state, at.turns)
-    # from one largest deflection to the next, not from one instant to another: along the motion
-    matrix = whole - np.outer(rates, whole[1]) / rates[1]
-    matrix[:, 1] = 0.0
-    return Linear(rates, matrix, np.linalg.pinv(np.eye(path.size) - matrix))
+                return None
+            matrix = section.derivative(state, passages)
+    return None

@@ -11,8 +11,18 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
+from frictionlab.compile.dispatch import (
+    by_contact,
+    by_dimension,
+    by_law,
+    by_relaxing,
+    by_scalars,
+    by_variation,
+    length,
+)
 from frictionlab.compile.stack import count_of
 from frictionlab.motion.equation import (
     Flow,
@@ -28,6 +38,7 @@ from frictionlab.motion.equation import (
     swing_of,
 )
 from frictionlab.motion.events import dips
+from frictionlab.motion.linalg import block
 from frictionlab.motion.maps.case import Case, Stepping, case_in_piece, keep_step
 from frictionlab.motion.maps.creep import BELOW, SLOW, creeps, longest_while_slow, note_creep
 from frictionlab.motion.maps.linearization import linearize
@@ -244,6 +255,38 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, zero: Any) -> float:
     return side
 
 
+def _without_loads(body: BodyNumbers, zero: float) -> bool:
+    loads = abs(body.load_sine) + abs(body.load_cosine)
+    return loads + abs(body.reference_sine) + abs(body.reference_cosine) == 0.0
+
+
+_free_on_the_line = by_dimension(_without_loads, lambda body, zero: False)
+_free_of_loads = by_variation(lambda body, zero: _free_on_the_line(body, zero), lambda body, zero: False)
+is_free = by_relaxing(lambda body, zero: _free_of_loads(body, zero), lambda body, zero: False)
+"""is_free(body, zero): whether nothing changes in time, so that only what grows bounds a step."""
+
+
+def _growth_on_the_line(flow: Flow, work: Work, zero: float) -> float:
+    """Return the largest modulus of the eigenvalues at ``work.start`` that have a positive real part."""
+    body, n = flow.body, count_of(flow.law)
+    load, matrix = body.normal_load, np.zeros((n + 2, n + 2), np.complex128)
+    matrix[0, 1] = 1.0
+    matrix[1, 0] = -(body.stiffness_mean + body.stiffness_split)
+    matrix[1, 1] = -(body.damping_mean + body.damping_split + load * block(work.jacobian, 3 * n, zero))
+    for k in range(n):
+        matrix[1, 2 + k] = -load * block(work.jacobian, 3 * k + 2, zero)
+        matrix[2 + k, 1] = block(work.jacobian, 3 * k, zero)
+        matrix[2 + k, 2 + k] = block(work.jacobian, 3 * k + 1, zero)
+    fastest = 0.0
+    for value in np.linalg.eigvals(matrix):
+        if value.real > 0.0:
+            fastest = max(fastest, abs(value))
+    return fastest
+
+
+_growth = by_dimension(_growth_on_the_line, lambda flow, work, zero: math.inf)
+
+
 @inner
 def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) -> Any:
     """Follow the motion from ``work.start`` until ``end``; return the smallest slip speed and the steps.
@@ -255,11 +298,16 @@ def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) ->
     accuracy, track, pace = stepping.accuracy, stepping.track, stepping.pace
     friction = usual_friction(law, body)
     longest = longest_step(body, friction, accuracy)
+    free = is_free(body, zero)
     began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
     node, h, steps = _depart(flow, True, work, zero), 0.1 * longest, 0
     closest = length(node.w)
     while end - node.tau > 4e-15 * end:
-        h = min(h, longest, end - node.tau, longest_while_slow(law, work, node.a))
+        if h > longest and free:
+            h = min(h, max(longest, 1.0 / (_growth(flow, work, zero) + 1e-300)))
+        else:
+            h = min(h, longest)
+        h = min(h, end - node.tau, longest_while_slow(law, work, node.a))
         # one step: too inaccurate, it is repeated shorter
         growth = growth_factor(step(flow, node.tau, h, work, zero) / accuracy, 5.0)
         steps += 1

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -16,6 +17,9 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.motion.orbit.record import Orbit, Orbits
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
+from frictionlab.scene.units import Units, measured
+from frictionlab.theory.linear import velocity_scale
 from frictionlab.values.quantities import Floats, Record
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
@@ -177,6 +181,53 @@ def beyond_balance(name: str, scene: Scene) -> str | None:
             "give body.receptance.free_mass"
         )
     return None
+
+
+SMALLEST, LARGEST = 2.0**-5, 2.0**10
+"""Sizes of motions between which lengths are left as they are given."""
+_LENGTHS = re.compile(r"(?<= up to )[^ ]+(?= apart)|(?<=at x = )[^ ;]+|(?<=with velocity )[^ ;]+")
+"""Lengths and velocities in reasons."""
+
+
+def _size_of(scenes: Scenes) -> float:
+    """Return the largest of the swing without friction, the normal load of a body, and the belt speeds."""
+    scene = scenes.scene
+    swing = velocity_scale(scene) * max(1.0, 1.0 / scene.frequency)
+    load = scene.normal_load if scene.degrees_of_freedom > 0 else 0.0
+    sizes = swing, load or 0.0, np.abs(scenes.belt_speeds).max()
+    return max((float(size) for size in sizes if 0.0 < size < math.inf), default=1.0)
+
+
+def in_own_lengths(ask: Callable[..., Any], given: Sequence[Scene], law: FrictionLaw, *told: Any) -> Any:
+    """Ask ``solve`` or ``states`` of a method in lengths that give the motion a size near one.
+
+    Answers are in the lengths of the scenes given: no unit of theirs decides how accurate a method is.
+    """
+    scenes = Scenes.of(given)
+    size = _size_of(scenes)
+    if SMALLEST < size < LARGEST:
+        return ask(scenes, law, *told)
+    length = 2.0 ** round(math.log2(size))  # digits stay as they are
+    units = Units(length, 1.0, length if scenes.scene.degrees_of_freedom > 0 else 1.0)
+    found = ask(scenes.measured(units), measured(law, units), *told)
+    if not isinstance(found, Answers):
+        return _states_as_long(found, length)
+    orbits = found.orbits
+    return replace(
+        found,
+        reason=[_LENGTHS.sub(lambda said: f"{float(said[0]) * length:.6g}", each) for each in found.reason],
+        orbit=lambda i: _as_long(found.orbit(i), length),
+        orbits=orbits and (lambda: _as_long(orbits(), length)),
+        states=lambda i: _states_as_long(found.states(i), length),
+    )
+
+
+def _as_long(orbit: Any, length: float) -> Any:
+    return orbit and replace(orbit, x=orbit.x * length, v=orbit.v * length)
+
+
+def _states_as_long(states: Sequence[FoundState], length: float) -> list[FoundState]:
+    return [one._replace(x=one.x * length, velocity=one.velocity * length) for one in states]
 
 
 REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from frictionlab.methods.base import STATISTICAL, Answers, FoundState
+from frictionlab.methods.base import STATISTICAL, Answers, FoundState, in_own_lengths
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.curve_table import curve_inputs
 from frictionlab.runner.part import STATE_NUMBERS, KeptRows, beside_in_si
@@ -210,7 +210,7 @@ def _rows(
     if method.refusal(scenes[0], law) is not None:
         return
     numbers = dict.fromkeys(range(len(speeds)), 0)
-    for state in method.states(scenes, law, tolerance, starts):
+    for state in in_own_lengths(method.states, scenes, law, tolerance, starts):
         numbers[state.place] += 1
         for point in range(len(state.x)):
             own = _row(state, point, float(speeds[state.place]), numbers[state.place])

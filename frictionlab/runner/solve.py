@@ -19,7 +19,7 @@ from frictionlab.laws.faults import (
     lost_error,
     text_of_error,
 )
-from frictionlab.methods.base import NOT_UNIQUE, Answers, refused
+from frictionlab.methods.base import NOT_UNIQUE, Answers, in_own_lengths, refused
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.part import KeptRows, Part, Piece, columns_of_states, derived_columns
 from frictionlab.scene.scene import Scene
@@ -57,7 +57,7 @@ def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
         return []
     scenes = chunk.scenes.taken(places)
     try:
-        answers = chunk.method.solve(scenes, chunk.law, chunk.task.tolerance)
+        answers = in_own_lengths(chunk.method.solve, scenes, chunk.law, chunk.task.tolerance)
         return [Piece(places, _believable(answers, chunk.law, len(scenes)))]
     except BrokenPlugin:
         raise

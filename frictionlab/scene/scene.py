@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple, cast
+from typing import Annotated, Any, NamedTuple, cast
 
 from pydantic import ValidationError, model_validator
 
@@ -44,6 +44,7 @@ from frictionlab.scene.parts import (
 )
 from frictionlab.scene.rules import periods_of, problems_of_parts, problems_of_slip, replaced_by_table
 from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
+from frictionlab.scene.units import FORCE, VELOCITY
 from frictionlab.scene.varying import varying_of
 from frictionlab.scene.waveforms import SINE, form_of
 from frictionlab.values.quantities import Finite, NonNegative, Positive, given_values
@@ -192,8 +193,8 @@ class Scene(ScenePart):
     """
 
     damping_ratio: NonNegative | None = None
-    normal_load: Positive | None = None
-    belt_speed: Finite
+    normal_load: Annotated[Positive, FORCE] | None = None
+    belt_speed: Annotated[Finite, VELOCITY]
     drive: Drive | None = None
     transverse: Transverse | None = None
     body: Body | None = None

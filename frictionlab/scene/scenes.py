@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.units import Units, measured
 from frictionlab.values.quantities import Floats
 
 
@@ -41,6 +42,11 @@ class Scenes(Sequence[Scene]):
         """Array of belt speeds [scene velocity]."""
         si = self.scene.dimensional
         return self.given if si is None else self.given / si.scales.velocity
+
+    def measured(self, units: Units) -> Scenes:
+        """Return the scenes, nondimensional, in other units."""
+        nondimensional = self.scene.model_copy(update={"dimensional": None})
+        return Scenes(measured(nondimensional, units), self.belt_speeds / units.velocity)
 
     def __len__(self) -> int:
         return len(self.given)

@@ -101,6 +101,12 @@ def scaled_law(law: _RecordT, scales: Units) -> _RecordT:
     return law.model_copy(update=parameters) if parameters else law
 
 
+def measured(record: _RecordT, scales: Units) -> _RecordT:
+    """Return a nondimensional law or scene, with its parts, in other units, which have any size."""
+    parts = {name: measured(part, scales) for name, part in record if isinstance(part, Record)}
+    return record.model_copy(update=parts | scaled_parameters(record, scales))
+
+
 def _has_size(value: float | tuple[float, ...], given: Any) -> bool:
     """Check whether each converted number is finite, and zero only if the one given is."""
     if isinstance(value, tuple):

@@ -9,6 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
+from frictionlab.methods.periodic.period_map import size_of_deviation
 from frictionlab.methods.periodic.setting import (
     Maps,
     Setting,
@@ -81,7 +82,8 @@ def obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
 def _arrives(setting: Setting, start: Any, orbit: KnownOrbit, constant: bool) -> int:
     """After how many periods a motion comes near to an orbit, or nears it as its monodromy says; 0 for never."""
     slides_on = constant and slip_keeps_its_side(setting)
-    residual, size, steps, obeyed = np.empty(start.size), 1.0 + norm(orbit.state), 0, 0
+    residual, steps, obeyed = np.empty(start.size), 0, 0
+    size = size_of_deviation(setting.maps.per_drive.normal_load, orbit.state)
     before, after, predicted = np.empty(start.size), np.empty(start.size), np.empty(start.size)
     subtract(start, orbit.state, before)
     for n in range(1, PATIENCE + 1):
@@ -150,9 +152,9 @@ LONGEST_PERIOD = 8
 
 
 @inner
-def _apart(states: Any, a: int, b: int) -> float:
+def _apart(states: Any, a: int, b: int, least: float) -> float:
     # Relative to the largest number of the state: memories may be far smaller than positions.
-    total, size = 0.0, 1.0
+    total, size = 0.0, least
     for row in range(states.shape[1]):
         total += (states[a, row] - states[b, row]) ** 2
         size = max(size, abs(states[a, row]))
@@ -212,7 +214,7 @@ def iterate_until_periodic(
     residual, slides_on = np.empty(states.shape[1]), how.constant and slip_keeps_its_side(setting)
     # A bristle that nears its limit as a power of the way slid comes to move less than that long before it is there.
     alike *= 0.1 if slides_on else 1.0
-    alike = 0.0 if how.whole else alike
+    alike, least = 0.0 if how.whole else alike, min(1.0, scales.normal_load)
     before, after, predicted = np.empty(residual.size), np.empty(residual.size), np.empty(residual.size)
     subtract(states[0], orbit.state, before)
     near, obeyed, far = VERY_NEAR * norm(orbit.state), 0, 0.0
@@ -236,11 +238,11 @@ def iterate_until_periodic(
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
             # Two states in a row must repeat: one alone may pass near an old one by chance.
-            repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < alike
+            repeats = max(_apart(states, n + 1, n + 1 - k, least), _apart(states, n, n - k, least)) < alike
             # A spiral into an orbit of fewer periods looks like a longer one while it is still far out.
             if repeats and nearest > 1e-4:
                 return int(passed[n + 1] - passed[n + 1 - k]), n + 1
-            nearest = min(nearest, _apart(states, n + 1, n + 1 - k))
+            nearest = min(nearest, _apart(states, n + 1, n + 1 - k, least))
         if image.steps < 0 or steps > MUCH_WORK:
             return 0, n + 1
     return 0, means.size

@@ -17,6 +17,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import monodromy
+from frictionlab.methods.periodic.period_map import size_of_deviation
 from frictionlab.methods.periodic.setting import (
     Maps,
     Setting,
@@ -29,7 +30,7 @@ from frictionlab.methods.periodic.setting import (
 )
 from frictionlab.methods.periodic.steady_sliding import NEAR
 from frictionlab.motion.equation import mean_friction
-from frictionlab.motion.linalg import copy, norm
+from frictionlab.motion.linalg import copy
 from frictionlab.motion.orbit.recorder import Track, grown, track_of
 from frictionlab.values.quantities import Floats
 
@@ -151,7 +152,7 @@ def _slides_on(setting: Setting, guess: Any, state: Any) -> bool:
     apart = 0.0
     for row in range(state.size if guess.shape[0] > 0 else 0):
         apart = math.hypot(apart, guess[0, row] - state[row])
-    return apart < NEAR * (1.0 + norm(state))
+    return apart < NEAR * size_of_deviation(setting.maps.per_drive.normal_load, state)
 
 
 @inner
@@ -186,7 +187,7 @@ def record_orbit(setting: Setting, z: Any, accuracy: float, track: Track) -> Tra
 @inner
 def recorded_accuracy(normal_load: float, goal: Goal) -> float:
     """The recorded motion is a map of its own, as exact as the mean was asked to be."""
-    return max(0.1 * goal.tolerance * normal_load, 1e-13)
+    return max(0.1 * goal.tolerance * normal_load, 1e-13 * min(1.0, normal_load))
 
 
 class Wanted(NamedTuple):

@@ -14,6 +14,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.methods.periodic.monodromy import PacedMap, inverse_of, monodromy_of, newton_inverse
+from frictionlab.methods.periodic.period_map import size_of_deviation
 from frictionlab.methods.periodic.setting import (
     Scales,
     Setting,
@@ -120,9 +121,12 @@ def stated_error(changed: float, left_open: float, steps: float) -> float:
 
 
 @inner
-def rounding_of(z: Any, belt_speed: float) -> float:
-    """What rounding makes of a state: no residual is asked to be below that."""
-    return 4e-15 * (1.0 + norm(z) + abs(belt_speed))
+def rounding_of(normal_load: float, z: Any, belt_speed: float) -> float:
+    """What rounding makes of a state: no residual is asked to be below that.
+
+    Rounding of slip moves the instants at which friction turns, and that matters in proportion to friction.
+    """
+    return 4e-15 * (size_of_deviation(normal_load, z) + min(1.0, normal_load) * abs(belt_speed))
 
 
 @inner
@@ -428,7 +432,7 @@ def fixed_point(
     """
     n, scales = z.size, scales_of(setting)
     search = Iterate(z, inverse, matrix, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
-    floor = rounding_of(z, setting.belt_speed)
+    floor = rounding_of(scales.normal_load, z, setting.belt_speed)
     finest, near = _first_accuracy(setting, goal.tolerance)
     finest = max(finest, floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * scales.normal_load))

@@ -170,7 +170,7 @@ def _judged(
     copy(fresh, before)
     multiply(inverse, fresh, step)
     # no finer map follows: what this one has wrong counts whole
-    floor = rounding_of(curve.states[i], rows.belt_speed[k])
+    floor = rounding_of(body.normal_load, curve.states[i], rows.belt_speed[k])
     error = stated_error(
         0.0, mean_error(scales_on(body), fresh, norm(step)), (floor + now.accuracy) / body.normal_load
     )
@@ -224,7 +224,7 @@ def _close_group(law: Any, body: BodyNumbers, goal: Goal, curve: LaneCurve, grou
         i = group.places[k]
         _guess(law, body, curve, i, curve.states[i])
         group.active[k], expected = True, max(expected, _expected(curve, i))
-        floor = max(floor, rounding_of(curve.states[i], curve.belt_speeds[i]))
+        floor = max(floor, rounding_of(body.normal_load, curve.states[i], curve.belt_speeds[i]))
     finest = first_accuracy_without_memory(goal.tolerance * body.normal_load)
     # points beside known ones begin with maps as fine as the residual that is expected of their guess
     last = max(finest, floor) / FINER_IN_LANES

@@ -29,8 +29,8 @@ from frictionlab.methods.periodic.lane_map import (
     rows_for,
     write_ends,
 )
+from frictionlab.methods.periodic.period_map import size_of_deviation
 from frictionlab.motion.equation import belt_advance
-from frictionlab.motion.linalg import norm
 from frictionlab.motion.maps.sliding import dense, motion_in_slip
 from frictionlab.motion.orbit.recorder import NODES, Track, grown, track_of
 from frictionlab.scene.body import BodyNumbers
@@ -172,11 +172,11 @@ def differentiate_in_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, states
         for k in range(orbits):
             i = min(begin + k, n - 1)  # lanes that are left over repeat the last orbit
             z, belt_speed = states[i], belt_speeds[i]
-            way = abs(belt_advance(body, belt_speed))
+            way, whole = abs(belt_advance(body, belt_speed)), size_of_deviation(body.normal_load, z)
             # the pattern of events hangs on the way of the belt
-            shifts[k], size = min(SHIFT * (1.0 + norm(z)), max(0.01 * way, 1e-3 * SHIFT)), max(size, norm(z))
+            shifts[k], size = min(SHIFT * whole, max(0.01 * way, 1e-3 * SHIFT * whole)), max(size, whole)
             _write_shifted(rows, belt_speed, z, shifts[k], LANES_OF_AN_ORBIT * k)
-        lane_map(law, body, rows, COARSE * (1.0 + size), True)
+        lane_map(law, body, rows, COARSE * size, True)
         for k in range(min(orbits, n - begin)):
             _write_monodromy(rows, shifts[k], LANES_OF_AN_ORBIT * k, matrices[begin + k])
     return matrices

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
+from frictionlab.methods.periodic.period_map import size_of_deviation
 from frictionlab.methods.periodic.setting import (
     Setting,
     SpanImage,
@@ -16,7 +17,7 @@ from frictionlab.methods.periodic.setting import (
     scales_of,
 )
 from frictionlab.motion.equation import mean_friction
-from frictionlab.motion.linalg import invert, norm
+from frictionlab.motion.linalg import invert
 from frictionlab.motion.maps.case import MOST_KEPT, Pace, pace_of
 
 OF_LOGARITHM = 1e-3
@@ -28,7 +29,7 @@ def _shift(setting: Setting, z: Any, relative: float, column: int) -> float:
     """It stays below the way the belt moves in a period: that much slip ends a period that was all stick."""
     carried = abs(setting.belt_speed) * scales_of(setting).period
     # Large against the error of the maps, small against the way of the belt, on which the pattern of events hangs.
-    shift, scalars = relative * (1.0 + norm(z)), setting.maps.scalars
+    shift, scalars = relative * size_of_deviation(setting.maps.per_drive.normal_load, z), setting.maps.scalars
     if scalars.first <= column < scalars.end:
         return min(shift, OF_LOGARITHM * scalars.unit)
     return min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
@@ -66,7 +67,7 @@ class PacedMap(NamedTuple):
 
 @inner
 def _accuracy_over_steps(setting: Setting, z: Any) -> float:
-    return setting.maps.orders.kept_accuracy * (1.0 + norm(z))
+    return setting.maps.orders.kept_accuracy * size_of_deviation(setting.maps.per_drive.normal_load, z)
 
 
 @inner

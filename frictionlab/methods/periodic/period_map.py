@@ -18,7 +18,7 @@ from frictionlab.compile.stack import count_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.words import ModelWord
-from frictionlab.motion.linalg import dimension
+from frictionlab.motion.linalg import dimension, norm
 from frictionlab.motion.maps.case import Case, Stepping
 from frictionlab.motion.maps.memory import coarsest, memory_map
 from frictionlab.motion.maps.memory_state import (
@@ -111,6 +111,12 @@ unpack = by_dimension(
 
 def _size_with_memory(law: Any, zero: Any) -> int:
     return 2 * dimension(zero) + coordinates(law, zero)
+
+
+@inner
+def size_of_deviation(normal_load: float, state: Any) -> float:
+    """Size of a state, which tells how far friction of this load moves the mass off the friction-free motion."""
+    return min(1.0, normal_load) + norm(state)
 
 
 size_of = by_law(lambda law, zero: 2 * dimension(zero), _size_with_memory, _size_with_memory)

@@ -16,6 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frictionlab.compile.interpret import interpreted
+from frictionlab.methods.periodic.period_map import size_of_deviation
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.values.quantities import Floats
 
@@ -102,6 +104,6 @@ def _judged(direction: _Direction, moved: NDArray[np.complex128]) -> Multiplier:
 
 def _shift_along(problem: PeriodicProblem, motion: ClosedMotion) -> float:
     """Below the way the belt moves in a period, on which the pattern of events hangs."""
-    usual = _SHIFT * (1.0 + float(np.linalg.norm(motion.state)))
+    usual = _SHIFT * float(interpreted(size_of_deviation)(problem.mass.normal_load, motion.state))
     way = abs(motion.belt_speed) * 2.0 * math.pi / problem.mass.frequency
     return min(usual, max(0.01 * way, 1e-3 * usual))

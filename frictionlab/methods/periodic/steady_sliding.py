@@ -15,7 +15,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
-from frictionlab.methods.periodic.period_map import deviate_evenly, start_of, unpack
+from frictionlab.methods.periodic.period_map import deviate_evenly, size_of_deviation, start_of, unpack
 from frictionlab.motion.equation import equilibrium, free_cosine, free_sine, swing_of
 from frictionlab.motion.linalg import norm, subtract
 from frictionlab.motion.maps.case import Case
@@ -115,7 +115,9 @@ def _ends_with_a_bristle(case: Case, state: Any) -> bool:
     distance = norm(target)
     write_sliding(case, target)
     margin = abs(belt_speed) - swing_of(body)
-    ends = margin <= GRAZING * swing_of(body) and distance < NEAR * (1.0 + norm(target))
+    ends = margin <= GRAZING * swing_of(body) and distance < NEAR * size_of_deviation(
+        body.normal_load, target
+    )
     ends = ends or _creep(case, state, zero) < margin
     for row in range(state.size if ends else 0):
         state[row] = target[row]

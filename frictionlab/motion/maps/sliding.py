@@ -337,9 +337,11 @@ def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase
 
 
 @inner
-def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
-    """Return the state of the deviation with which slip begins."""
+def _after_rest(problem: Flow, state: State, rest: StickPhase, end: float) -> State:
+    """Return the state of the deviation with which slip begins; that before, if it only turns."""
     body, tau = problem.body, rest.tau
+    if rest.stuck == 0.0 and rest.w == 0.0:
+        return state_at(problem, tau, state.x, state.v)
     # slip starts with the velocity from the balance of momentum
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
     u = u - reference_velocity(body, problem.sine, problem.cosine)
@@ -428,7 +430,7 @@ def _sliding_piece(
             steps += 1  # a rest of no length takes no step and no time, but counts
             body = at_rest_until(body, belt_speed, tau)
             problem = anchored(law, body, belt_speed, rest.side, tau)
-            state = _after_rest(problem, rest, end)
+            state = _after_rest(problem, state, rest, end)
             continue
         # the sine and cosine of a step are expanded about its start
         problem = anchored(law, body, belt_speed, problem.side, tau)

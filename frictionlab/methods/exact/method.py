@@ -317,7 +317,9 @@ class _Curve:
         shifts = np.where(self.sides[list(places)] < 0.0, self._shift(-1.0), self._shift(1.0))
         states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
-        return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
+        filled = slice(ends[-1])  # the rest of a track has never been written
+        parts = track.tau, track.x, track.v, track.friction, track.stick
+        return Orbits(*(part[filled] for part in parts), ends)
 
 
 class _VaryingCurve(_Curve):

@@ -606,6 +606,24 @@ def swing_of(body: BodyNumbers) -> float:
     return swing if swing > 0.0 else 1.0
 
 
+@inner
+def _free_state_of_one_sine(body: BodyNumbers) -> Any:
+    return free_cosine(body), body.frequency * free_sine(body)
+
+
+def _free_state_of_waves(body: BodyNumbers) -> Any:
+    x, v = _free_state_of_one_sine(body)
+    whole = body.varying.whole
+    return (whole.x + 0.0 * x, whole.velocity + 0.0 * v) if whole.fastest < math.inf else (x, v)
+
+
+free_state = by_variation(_free_state_of_one_sine, _free_state_of_waves)
+"""free_state(body): position and velocity of the motion without friction at tau = 0; if several waves drive it,
+those of the first unless more is known."""
+fastest_slip = by_variation(lambda body: swing_of(body), lambda body: body.varying.whole.fastest)
+"""fastest_slip(body): speed of the belt above which slip without friction keeps its side; infinite if not known."""
+
+
 def _pushed_away(body: BodyNumbers, x: Any) -> bool:
     """Check whether springs push outward a million times as hard as the linear one would pull back."""
     x1 = x.real
@@ -658,10 +676,15 @@ def balanced_load(body: BodyNumbers, now: Instant) -> Any:
     return body.balanced_sine * now.sine + body.balanced_cosine * now.cosine
 
 
-@fast
-def unbalanced_load(body: BodyNumbers, now: Instant) -> Any:
-    """Return the part of the load that drives the deviation."""
-    return load(body, now) - balanced_load(body, now)
+unbalanced_load = by_variation(
+    lambda body, now: (
+        (body.load_sine - body.balanced_sine) * now.sine
+        + (body.load_cosine - body.balanced_cosine) * now.cosine
+    ),
+    lambda body, now: load(body, now) - balanced_load(body, now),
+)
+"""unbalanced_load(body, now): part of the load that drives the deviation, zero to the last bit if the reference
+balances one sine."""
 
 
 @inner

@@ -119,7 +119,8 @@ class Whole(NamedTuple):
     """Numbers that are the same in every piece.
 
     lines, edges: places in the table of the numbers of the pieces and of their ends. pieces: their count.
-    periods, quickest, belt_swing: as in ``Varying``.
+    periods, quickest, belt_swing: as in ``Varying``. fastest, x, velocity: largest velocity along x1, against
+    the belt's vibration, of the motion without friction, and its state at tau = 0; infinite if not known.
     """
 
     lines: int
@@ -128,6 +129,9 @@ class Whole(NamedTuple):
     periods: float
     quickest: float
     belt_swing: float
+    fastest: float = math.inf
+    x: float = 0.0
+    velocity: float = 0.0
 
 
 class Packed(NamedTuple):

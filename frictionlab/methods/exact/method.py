@@ -318,8 +318,8 @@ class _Curve:
         states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         filled = slice(ends[-1])  # the rest of a track has never been written
-        parts = track.tau, track.x, track.v, track.friction, track.stick
-        return Orbits(*(part[filled] for part in parts), ends)
+        parts = track.x[filled], track.v[filled], track.friction[filled], track.stick[filled]
+        return Orbits(track.tau[filled], *parts, ends)
 
 
 class _VaryingCurve(_Curve):

@@ -160,7 +160,7 @@ def _sliding(setting: Setting, state: Any) -> FixedPoint:
     """The constant friction of slip that never reverses, from its state; it takes no map."""
     friction = write_sliding_state(setting, state)
     impulse = complex(-friction * scales_of(setting).period, 0.0)
-    slowest = max(0.0, abs(setting.belt_speed) - setting.maps.swing)
+    slowest = max(0.0, abs(setting.belt_speed) - setting.maps.fastest)
     return FixedPoint(impulse, ROUNDING * max(1.0, abs(friction)), 0, 0.0, slowest, 0.0)
 
 

@@ -48,6 +48,7 @@ from frictionlab.scene.body import BodyNumbers, for_kernels, in_the_plane, on_th
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
+from frictionlab.theory.linear import friction_free_response, velocity_scale
 from frictionlab.theory.rest import falls_slower_than_dashpots, falls_slowly, is_convergent, resonates_once
 from frictionlab.theory.sliding_stability import slides_saturated
 from frictionlab.theory.springs import BEST, mass_of
@@ -69,6 +70,17 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
         load, belt = (_largest(each[0], signals.period) for each in (signals.load, signals.belt))
         swing = (4.0 / math.pi * load / mass.damping if mass.damping > 0.0 else math.inf) + belt
     return law.obeys("reflection") and law.damps_across(abs(scene.belt_speed) + swing)
+
+
+def _with_free_state(scene: Scene, body: BodyNumbers) -> BodyNumbers:
+    """Return a body that several waves drive along the line, with its motion without friction."""
+    free = friction_free_response(scene, None, 0)
+    if free is None:
+        return body
+    x, v = (float(value[0]) for value in free[0].at(np.zeros(1), np.zeros(1, np.int64)))
+    fastest = max(velocity_scale(scene.model_copy(update={"belt_speed": way})) for way in (1.0, -1.0))
+    whole = body.varying.whole._replace(fastest=fastest, x=x, velocity=v)
+    return body._replace(varying=body.varying._replace(whole=whole))
 
 
 def _largest(signal: Signal, period: float) -> float:
@@ -120,9 +132,14 @@ class PeriodicProblem:
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
+        constant = (
+            not (self.body.bends or isinstance(self.zero, complex))
+            and scene.signals().normal_load == Signal()
+            and slides_saturated(law)
+        )
+        if constant and self.body.varying and not self.body.relaxing:
+            self.body = _with_free_state(scene, self.body)
         self.maps = table_of_maps(law, self.body)
-        linear = scene.is_harmonic and not self.body.bends
-        constant = linear and not isinstance(self.zero, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
         self.size = interpreted(whole_size_of)(law, self.body, self.zero)  # of a state
         self.kind = map_kind(law, isinstance(self.zero, complex) or bool(self.body.relaxing))

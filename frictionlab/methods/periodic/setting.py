@@ -42,7 +42,7 @@ from frictionlab.methods.periodic.period_map import (
     whole_size_of,
 )
 from frictionlab.methods.periodic.steady_sliding import ends_sliding, write_sliding
-from frictionlab.motion.equation import bare, belt_advance, changed, span, swing_of
+from frictionlab.motion.equation import bare, belt_advance, changed, fastest_slip, span
 from frictionlab.motion.linalg import dimension
 from frictionlab.motion.maps.case import Pace, Stepping, case_of, keeping, noting, pace_of, repeating
 from frictionlab.motion.orbit.recorder import Track, track_of
@@ -111,7 +111,7 @@ class Maps(NamedTuple):
     remembers: bool
     planar: bool
     per_drive: Scales  # over one period of the drive
-    swing: float  # speed of the friction-free motion
+    fastest: float  # speed of the friction-free motion against the belt's vibration; infinite if not known
     orders: Orders
     coarsest: float  # accuracy that a map is made with, whatever is asked
     hidden_error: float  # of the mean, that comparing two maps cannot reveal, per accuracy: constant part
@@ -257,7 +257,7 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
         scalars = Scalars(2 * dimension(zero), size_of(law, zero), unit_of_scalars(law, on.body, zero))
         return room, Maps(
             written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
-            whole_size_of(law, body, zero), scalars, remembers, dimension(zero) == 2, scales, swing_of(on.body),
+            whole_size_of(law, body, zero), scalars, remembers, dimension(zero) == 2, scales, fastest_slip(on.body),
             of_memory if remembers else of_sliding,
             coarsest_of(law, on.body), hidden_error, per_time,
         )  # fmt: skip
@@ -359,7 +359,7 @@ def ends_in_sliding(setting: Setting, state: Any) -> bool:
 def slip_keeps_its_side(setting: Setting) -> bool:
     """Whether the belt is, to rounding, as fast as the vibration without friction or faster, and dashpots act."""
     maps = setting.maps
-    return maps.per_drive.damping > 0.0 and abs(setting.belt_speed) >= (1.0 - 1e-14) * maps.swing
+    return maps.per_drive.damping > 0.0 and abs(setting.belt_speed) >= (1.0 - 1e-14) * maps.fastest
 
 
 @inner

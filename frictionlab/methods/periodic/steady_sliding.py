@@ -16,7 +16,7 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
 from frictionlab.methods.periodic.period_map import deviate_evenly, size_of_deviation, start_of, unpack
-from frictionlab.motion.equation import equilibrium, free_cosine, free_sine, swing_of
+from frictionlab.motion.equation import equilibrium, fastest_slip, free_state
 from frictionlab.motion.linalg import norm, subtract
 from frictionlab.motion.maps.case import Case
 from frictionlab.motion.maps.memory_state import measure_scales, unpack_memory
@@ -33,7 +33,8 @@ GRAZING = 1e-5
 def state_of_sliding(body: BodyNumbers, friction: float, zero: Any) -> Any:
     """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
     shift = equilibrium(body, body.normal_load * friction, 0.0)
-    return free_cosine(body) + shift + 0.0 * zero, body.frequency * free_sine(body), 0.0 * zero
+    x, v = free_state(body)
+    return x + shift + 0.0 * zero, v, 0.0 * zero
 
 
 memory_of_sliding = by_law(
@@ -87,6 +88,8 @@ def _creep_on_the_line(case: Case, state: Any, zero: float) -> float:
     slope = abs(law.friction(fastest, z + nudge, rate) - law.friction(fastest, z - nudge, rate)) / (
         2.0 * nudge
     )
+    x, v = free_state(body)  # what is left is that beside the motion without friction
+    y, u = y + (body.reference_cosine - x), u + (body.frequency * body.reference_sine - v)
     left = math.hypot(math.sqrt(stiffness) * (y + body.normal_load * friction / stiffness), u)
     return left + _impulse_response(body) * body.normal_load * slope * abs(rate)
 
@@ -114,8 +117,8 @@ def _ends_with_a_bristle(case: Case, state: Any) -> bool:
     subtract(target, state, target)
     distance = norm(target)
     write_sliding(case, target)
-    margin = abs(belt_speed) - swing_of(body)
-    ends = margin <= GRAZING * swing_of(body) and distance < NEAR * size_of_deviation(
+    margin = abs(belt_speed) - fastest_slip(body)
+    ends = margin <= GRAZING * fastest_slip(body) and distance < NEAR * size_of_deviation(
         body.normal_load, target
     )
     ends = ends or _creep(case, state, zero) < margin

@@ -190,11 +190,16 @@ _LENGTHS = re.compile(r"(?<= up to )[^ ]+(?= apart)|(?<=at x = )[^ ;]+|(?<=with 
 
 
 def _size_of(scenes: Scenes) -> float:
-    """Return the largest of the swing without friction, the normal load of a body, and the belt speeds."""
-    scene = scenes.scene
-    swing = velocity_scale(scene) * max(1.0, 1.0 / scene.frequency)
-    load = scene.normal_load if scene.degrees_of_freedom > 0 else 0.0
-    sizes = swing, load or 0.0, np.abs(scenes.belt_speeds).max()
+    """Return about the largest of the swing without friction, the normal load of a body, and the belt speeds."""
+    scene, omega = scenes.scene, scenes.scene.frequency
+    forces = scene.drive, scene.transverse and scene.transverse.load
+    sizes = [part.size(omega) / max(1.0, omega) for part in forces if part]
+    speeds = scene.slip, scene.transverse_slip, scene.belt_vibration
+    sizes += [np.abs(scenes.belt_speeds).max(), *(part.size(omega) for part in speeds if part)]
+    if scene.degrees_of_freedom > 0:
+        sizes.append(scene.normal_load or 0.0)
+    if scene.is_harmonic and not scene.bends:
+        sizes.append(velocity_scale(scene) * max(1.0, 1.0 / omega))
     return max((float(size) for size in sizes if 0.0 < size < math.inf), default=1.0)
 
 

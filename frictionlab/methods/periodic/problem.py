@@ -50,7 +50,7 @@ from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory.linear import friction_free_response, velocity_scale
 from frictionlab.theory.rest import falls_slower_than_dashpots, falls_slowly, is_convergent, resonates_once
-from frictionlab.theory.sliding_stability import slides_saturated
+from frictionlab.theory.sliding_stability import SHORT, slides_saturated
 from frictionlab.theory.springs import BEST, mass_of
 from frictionlab.values.quantities import Floats
 
@@ -72,8 +72,13 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
     return law.obeys("reflection") and law.damps_across(abs(scene.belt_speed) + swing)
 
 
-def _with_free_state(scene: Scene, body: BodyNumbers) -> BodyNumbers:
-    """Return a body that several waves drive along the line, with its motion without friction."""
+def _with_free_state(scene: Scene, law: Any, body: BodyNumbers) -> BodyNumbers:
+    """Return a body that several waves drive along the line, with its motion without friction.
+
+    Bristles that near their limit exponentially do without: maps close their orbits, too.
+    """
+    if law.rate(1.0, (1.0 - SHORT) * law.largest_deflection()) > 0.1 * SHORT:
+        return body
     free = friction_free_response(scene, None, 0)
     if free is None:
         return body
@@ -138,7 +143,7 @@ class PeriodicProblem:
             and slides_saturated(law)
         )
         if constant and self.body.varying and not self.body.relaxing:
-            self.body = _with_free_state(scene, self.body)
+            self.body = _with_free_state(scene, law, self.body)
         self.maps = table_of_maps(law, self.body)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
         self.size = interpreted(whole_size_of)(law, self.body, self.zero)  # of a state

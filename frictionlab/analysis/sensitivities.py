@@ -18,7 +18,7 @@ import pandas as pd
 from frictionlab.analysis.quotients import CORNER, MAPS_PER_TRY, Derivative, Pair, asked_for, derivative
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.methods.base import NOT_UNIQUE, Method
+from frictionlab.methods.base import NOT_UNIQUE, Method, in_length, own_length
 from frictionlab.methods.periodic.continuation import FINE
 from frictionlab.methods.periodic.period_map import MAP_KINDS, map_kind
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
@@ -26,6 +26,7 @@ from frictionlab.runner.arguments import given_law, given_method, given_scene
 from frictionlab.runner.state import SteadyState
 from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
 from frictionlab.study.grid import law_in_scene
 from frictionlab.values.quantities import Floats
 
@@ -39,13 +40,17 @@ class OnePeriod(NamedTuple):
     problem: PeriodicProblem
     scene: Scene
     law: FrictionLaw  # in the lengths and times of the scene
+    length: float  # of the scene's own: the unit in which scene and law are
 
     @classmethod
-    def of(cls, scene: Scene, law: FrictionLaw) -> OnePeriod:
-        """That of a driven mass."""
-        inside = law_in_scene(law, scene)
-        kind = map_kind(inside, not along_the_belt(scene, inside))
-        return cls(PeriodicProblem(scene, inside, MAP_KINDS[kind].finest), scene, inside)
+    def of(cls, scene: Scene, law: FrictionLaw, length: float | None = None) -> OnePeriod:
+        """Return that of a driven mass; length: the unit in which others have their states."""
+        given = Scenes.of([scene])
+        length = length or own_length(given)
+        measured, inside = in_length(given, law_in_scene(law, scene), length)
+        kind = map_kind(inside, not along_the_belt(measured[0], inside))
+        problem = PeriodicProblem(measured[0], inside, MAP_KINDS[kind].finest)
+        return cls(problem, measured[0], inside, length)
 
     def like(self, other: OnePeriod) -> bool:
         """Whether states of the other are states of this one, followed by the same map."""
@@ -316,7 +321,7 @@ def _a_period_with(found: _AtFixedPoint, path: str, number: float, method: Metho
         other = found.pair.with_(path, number).later(found.turn)
     except ValueError:
         return None
-    one = OnePeriod.of(other.scene, other.law)
+    one = OnePeriod.of(other.scene, other.law, found.one.length)
     if method.refusal(one.scene, one.law) is not None:
         return None
     return np.asarray(one.from_states(found.z[None])[0]) if one.like(found.one) else None

@@ -189,8 +189,11 @@ _LENGTHS = re.compile(r"(?<= up to )[^ ]+(?= apart)|(?<=at x = )[^ ;]+|(?<=with 
 """Lengths and velocities in reasons."""
 
 
-def _size_of(scenes: Scenes) -> float:
-    """Return about the largest of the swing without friction, the normal load of a body, and the belt speeds."""
+def own_length(scenes: Scenes) -> float:
+    """Return the unit of length in which the motion has a size near one, a power of two: digits stay as they are.
+
+    The size is about the largest of the swing without friction, the normal load of a body, and the belt speeds.
+    """
     scene, omega = scenes.scene, scenes.scene.frequency
     forces = scene.drive, scene.transverse and scene.transverse.load
     sizes = [part.size(omega) / max(1.0, omega) for part in forces if part]
@@ -200,7 +203,14 @@ def _size_of(scenes: Scenes) -> float:
         sizes.append(scene.normal_load or 0.0)
     if scene.is_harmonic and not scene.bends:
         sizes.append(velocity_scale(scene) * max(1.0, 1.0 / omega))
-    return max((float(size) for size in sizes if 0.0 < size < math.inf), default=1.0)
+    size = max((float(size) for size in sizes if 0.0 < size < math.inf), default=1.0)
+    return 1.0 if SMALLEST < size < LARGEST else 2.0 ** round(math.log2(size))
+
+
+def in_length(scenes: Scenes, law: FrictionLaw, length: float) -> tuple[Scenes, FrictionLaw]:
+    """Return nondimensional scenes and a law in another unit of length."""
+    units = Units(length, 1.0, length if scenes.scene.degrees_of_freedom > 0 else 1.0)
+    return scenes.measured(units), measured(law, units)
 
 
 def in_own_lengths(ask: Callable[..., Any], given: Sequence[Scene], law: FrictionLaw, *told: Any) -> Any:
@@ -209,12 +219,10 @@ def in_own_lengths(ask: Callable[..., Any], given: Sequence[Scene], law: Frictio
     Answers are in the lengths of the scenes given: no unit of theirs decides how accurate a method is.
     """
     scenes = Scenes.of(given)
-    size = _size_of(scenes)
-    if SMALLEST < size < LARGEST:
+    length = own_length(scenes)
+    if length == 1.0:
         return ask(scenes, law, *told)
-    length = 2.0 ** round(math.log2(size))  # digits stay as they are
-    units = Units(length, 1.0, length if scenes.scene.degrees_of_freedom > 0 else 1.0)
-    found = ask(scenes.measured(units), measured(law, units), *told)
+    found = ask(*in_length(scenes, law, length), *told)
     if not isinstance(found, Answers):
         return _states_as_long(found, length)
     orbits = found.orbits

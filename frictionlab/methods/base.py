@@ -228,7 +228,7 @@ def in_own_lengths(ask: Callable[..., Any], given: Sequence[Scene], law: Frictio
     orbits = found.orbits
     return replace(
         found,
-        reason=[_LENGTHS.sub(lambda said: f"{float(said[0]) * length:.6g}", each) for each in found.reason],
+        reason=[_LENGTHS.sub(lambda said: f"{float(said[0]) * length:.3g}", each) for each in found.reason],
         orbit=lambda i: _as_long(found.orbit(i), length),
         orbits=orbits and (lambda: _as_long(orbits(), length)),
         states=lambda i: _states_as_long(found.states(i), length),

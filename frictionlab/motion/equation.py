@@ -340,6 +340,17 @@ quickest_of = by_variation(lambda body: body.frequency, lambda body: body.varyin
 """quickest_of(body): highest circular frequency of all functions of time."""
 
 
+def _without_loads(body: BodyNumbers, zero: float) -> bool:
+    loads = abs(body.load_sine) + abs(body.load_cosine)
+    return loads + abs(body.reference_sine) + abs(body.reference_cosine) == 0.0
+
+
+_free_on_the_line = by_dimension(_without_loads, lambda body, zero: False)
+_free_of_loads = by_variation(lambda body, zero: _free_on_the_line(body, zero), lambda body, zero: False)
+is_free = by_relaxing(lambda body, zero: _free_of_loads(body, zero), lambda body, zero: False)
+"""is_free(body, zero): whether nothing changes in time."""
+
+
 # --- the motion ---------------------------------------------------------------------------------------------------
 
 

@@ -33,7 +33,6 @@ from frictionlab.methods.shooting.long_motions import SMALL_ERROR, drifts
 from frictionlab.methods.shooting.undriven_path import (
     FOLLOWED,
     LEAST,
-    MOST_PANELS,
     MOST_RETURNS,
     PANELS_AT_FIRST,
     RETURN_DISTANCE,
@@ -338,7 +337,7 @@ class Undriven:
         raise NotFound(f"the mass still swings: {path.whereabouts(state)}")
 
     def orbit(self, motion: PeriodicMotion) -> Orbit | None:
-        """The orbit of the motion; of one that stands still, over 2 pi; none of one that takes too many panels."""
+        """The orbit of the motion; of one that stands still, over 2 pi; none of one that takes too many steps."""
         if motion.kind in (ModelWord.AT_REST, ModelWord.SLIDES):
             x = motion.state[0] / math.sqrt(self._path.mass.stiffness)
             whole, rests = (
@@ -352,10 +351,11 @@ class Undriven:
         accuracy = min(max(0.1 * self.tolerance, LEAST), self._accuracy)
         # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
         accuracy = max(accuracy / FINER, LEAST) if self.law.count() == 0 else accuracy
-        track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
-        parts = track.tau, track.x, track.v, track.friction, track.stick
-        if track.filled[0] == MOST_PANELS:
+        try:
+            track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
+        except NotFound:
             return None
+        parts = track.tau, track.x, track.v, track.friction, track.stick
         found = Orbit(*(part[: track.filled[0]] for part in parts))
         return found if motion.long is None else replace(found, periods=round(turns))
 

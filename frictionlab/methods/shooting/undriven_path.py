@@ -22,7 +22,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, stated_error
 from frictionlab.methods.periodic.period_map import start_of, unit_of_scalars, whole_size_of
-from frictionlab.methods.periodic.setting import Maps, Setting, recorded_map, table_of_maps
+from frictionlab.methods.periodic.setting import Maps, Setting, maps_of, recorded_map
 from frictionlab.motion.equation import (
     START,
     belt_velocity,
@@ -73,6 +73,10 @@ class NotFound(Exception):
 
 class TooMuchWork(NotFound):
     """None within ``MOST_WORK`` steps."""
+
+
+class TooLong(NotFound):
+    """A span takes too many steps."""
 
 
 class Span(NamedTuple):
@@ -134,7 +138,8 @@ class UndrivenPath:
 
     @cached_property
     def _maps(self) -> MadeByKernel:
-        return table_of_maps(self.law, self._body)
+        # steps by the path are explicit: none is longer than a swing of the mass on its bristle
+        return MadeByKernel(maps_of, self.law, self._body)
 
     @cached_property
     def size(self) -> int:
@@ -226,17 +231,17 @@ class UndrivenPath:
     # --- the motion ---
 
     def follow(self, state: Floats, turns: float, accuracy: float = FOLLOWED, room: int = 0) -> Span:
-        """So many turns, on a track with so much room. Raises NotFound."""
+        """So many turns, on a track with so much room. Raises NotFound, TooLong where shorter spans may do."""
         span: Span
         accuracy *= self.mass.normal_load
         arguments = self._maps, self.scene.belt_speed, float(turns), state, accuracy, room
         span, seconds = KernelCall(follow_undriven).timed(*arguments)
         self.effort.seconds += seconds
-        self.effort.work += span.steps
+        self.effort.work += span.steps if span.steps >= 0 else MOST_STEPS
         if span.steps < 0 and interpreted(runs_away)(self._body, float(span.end[0])):
             raise NotFound(f"the motion runs away: {self.whereabouts(state)}")
-        if span.steps < 0 or not np.isfinite(span.end).all():
-            raise NotFound(
+        if span.steps < 0 or not np.isfinite(span.end).all() or span.track.filled[0] == MOST_PANELS:
+            raise TooLong(
                 f"friction is too steep near rest for {MOST_STEPS:,} steps: {self.whereabouts(state)}"
             )
         if self.effort.work > MOST_WORK:
@@ -269,8 +274,8 @@ class UndrivenPath:
 
 FIRST_SPAN, LONGEST = 2.0, 1e15
 """Turns of the first span in which a passage is looked for, and turns without one after which none is."""
-SHORTER = 0.25
-"""Of a span with too many panels, followed anew."""
+SHORTER, FEW_STEPS = 0.25, 5000
+"""Length of a span followed anew, over that of one that took too many steps; steps of one that may be longer."""
 BEFORE = 0.9
 """Turns of the first span of a passage, over those of the last passage: what comes behind is followed twice."""
 BESIDE = 1e-3
@@ -372,10 +377,14 @@ class Passages:
         """Follow a motion to its next passage; where it swings beside the level, move that. Raises NotFound."""
         path, turns, impulse, length = self.path, 0.0, 0.0, BEFORE * self._guess
         low, high, fastest, spread, rises = math.inf, -math.inf, 0.0, 0.0, False
+        longest, swings, least, most = math.inf, 0, math.inf, -math.inf
         while turns < LONGEST:
-            span = path.follow(state, length, self.accuracy, PANELS_AT_FIRST)
-            if span.track.filled[0] == MOST_PANELS:
-                length *= SHORTER
+            try:
+                span = path.follow(state, length, self.accuracy, PANELS_AT_FIRST)
+            except TooLong:
+                if length <= FIRST_SPAN:
+                    raise
+                length = longest = SHORTER * length
                 continue
             tau, x, v = self._along(span.track)
             found = self._first_passage(x, v, rises)
@@ -397,12 +406,18 @@ class Passages:
             if self._stays(state, span.end):
                 return Settled(span.end, False)
             tops = np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0))
-            if len(tops) >= SWINGS_BESIDE and turns > PATIENCE * self._guess:
-                self.level = 0.5 * float(x[tops[0] :].min() + x[tops[0] :].max())
+            if tops.size or swings:  # what comes behind the first largest deflection
+                part, swings = x[tops[0] :] if not swings else x, swings + tops.size
+                least, most = min(least, part.min()), max(most, part.max())
+            if swings >= SWINGS_BESIDE and turns > PATIENCE * self._guess:
+                self.level = 0.5 * float(least + most)
             rises = rises or bool((v > 0.0).any())
             state, turns, impulse = span.end, turns + length, impulse + span.impulse
-            # as long as the last passage took, and a little: then ever longer
-            length = 2.0 * length if turns > self._guess else (1.05 - BEFORE) * self._guess
+            # as long as the last passage took, and a little: then ever longer, while spans take few steps
+            if turns <= self._guess:
+                length = min(longest, (1.05 - BEFORE) * self._guess)
+            elif span.steps < FEW_STEPS:
+                length = min(longest, 2.0 * length)
         raise NotFound(f"no steady state within {turns:.0e} periods: {path.whereabouts(state)}")
 
     def center(self, last: Passage) -> bool:
@@ -428,21 +443,21 @@ class Passages:
 
     def _at_level(self, first: Floats, within: float) -> tuple[Span, float]:
         """Return the span from a state to the level, which it reaches within so many turns, and its turns."""
-        # Illinois: of the false positions, the end that stays is given half its weight
         level, side = self.level * self._root, self.path.side
-        low, high, below, above, at = 0.0, within, side * float(first[0]) - level, math.nan, within
+        low, high, at = 0.0, within, within
         while True:
             end = self.path.follow(first, at, self.accuracy)
-            left = side * float(end.end[0]) - level
+            left, speed = side * float(end.end[0]) - level, side * TURN * self._root * float(end.end[1])
             if abs(left) <= AT_LEVEL * self.noise or high - low <= 1e-14 * (1.0 + within):
                 end.end[0] = side * level
                 return end, at
             if left > 0.0:
-                low, below, above = at, left, 0.5 * above
-                high = max(high, 1.01 * at)  # the end of the track was that of other steps
+                low, high = at, max(high, 1.01 * at)  # the end of the track was that of other steps
             else:
-                high, above, below = at, left, 0.5 * below
-            at = (low * above - high * below) / (above - below) if above < 0.0 else high
+                high = at
+            at = at - left / speed if speed < 0.0 else low
+            if not low < at < high:
+                at = 0.5 * (low + high)
 
     def _friction_off_sliding(self, track: Track) -> float:
         """Return the largest distance of friction from that of sliding, over it."""

@@ -14,15 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import (
-    by_contact,
-    by_dimension,
-    by_law,
-    by_relaxing,
-    by_scalars,
-    by_variation,
-    length,
-)
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.motion.equation import (
     Flow,
@@ -30,6 +22,7 @@ from frictionlab.motion.equation import (
     belt_path,
     instant_at,
     instant_near,
+    is_free,
     load_share,
     piece_ends,
     pieces_of,
@@ -253,17 +246,6 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, zero: Any) -> float:
         work.start[Y] = 0.0 * zero
         work.start[U] = held_velocity(flow, instant_near(flow, tau), 0.0 * zero)
     return side
-
-
-def _without_loads(body: BodyNumbers, zero: float) -> bool:
-    loads = abs(body.load_sine) + abs(body.load_cosine)
-    return loads + abs(body.reference_sine) + abs(body.reference_cosine) == 0.0
-
-
-_free_on_the_line = by_dimension(_without_loads, lambda body, zero: False)
-_free_of_loads = by_variation(lambda body, zero: _free_on_the_line(body, zero), lambda body, zero: False)
-is_free = by_relaxing(lambda body, zero: _free_of_loads(body, zero), lambda body, zero: False)
-"""is_free(body, zero): whether nothing changes in time, so that only what grows bounds a step."""
 
 
 def _growth_on_the_line(flow: Flow, work: Work, zero: float) -> float:

@@ -23,6 +23,7 @@ from frictionlab.motion.equation import (
     holding_force,
     instant_at,
     instant_near,
+    is_free,
     normal_load,
     piece_ends,
     pieces_of,
@@ -316,7 +317,8 @@ def note_stick(track: Track, problem: Flow, tau: float, lasts: float, x: Any) ->
     The loads vary within a rest.
     """
     body, belt_speed = problem.body, problem.belt_speed
-    panels = 1 + int(4.0 / math.pi * quickest_of(body) * lasts)
+    quickest = 0.0 if is_free(body, x) else quickest_of(body)
+    panels = 1 + int(4.0 / math.pi * quickest * lasts)
     for k in range(panels):
         start = tau + lasts * k / panels
         carried = x + belt_path(body, belt_speed, tau, start)

@@ -111,6 +111,7 @@ def test_plain_coulomb_friction_on_a_damped_mass_always_ends_in_steady_sliding(d
 
 @given(law=st.sampled_from([LEINE, CUBIC, Coulomb(mu=0.3, mu_static=0.6)]), belt_speed=sizes(1e-4, 0.3))
 @example(law=LEINE, belt_speed=10.0**-0.9375)
+@example(law=CUBIC, belt_speed=1e-4)
 @example(law=Coulomb(mu=0.3, mu_static=0.6), belt_speed=0.01)
 def test_the_error_of_a_limit_cycle_covers_what_a_finer_tolerance_changes(law, belt_speed):
     _, coarse, _, _ = solve(law, belt_speed, 1e-5, damping_ratio=0.02)

@@ -14,8 +14,8 @@ LIMITS = {
     "compile": 1449,
     "curves": 946,
     "laws": 690,
-    "methods": 11843,
-    "motion": 4830,
+    "methods": 11600,
+    "motion": 4890,
     "report": 1772,
     "runner": 4341,
     "scene": 1679,
@@ -23,7 +23,7 @@ LIMITS = {
     "testing": 1497,
     "theory": 924,
     "values": 1375,
-    "tests": 29613,
+    "tests": 29600,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

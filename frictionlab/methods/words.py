@@ -59,10 +59,6 @@ class ModelWord(StrEnum):
     WITH_BRISTLE = "bristle", "mass and bristle solved together (Rodas5P)"
     WITH_MEMORY = "memory", "mass and memory solved together (Rodas5P)"
     SPRINGS = "sum of springs", "what of the body remembers followed as a sum of eight springs that relax"
-    PSEUDO_FORCE = (
-        "balanced force",
-        "a mass in the place of the body, under a force by which harmonics of its motion obey the body's receptance",
-    )
     NEAR_REST = "near rest", "slip near rest in polar coordinates (Radau IIA)"
     SATURATED = (
         "saturated",

@@ -13,7 +13,6 @@ from frictionlab.methods.base import Answers, FoundState, Method, about_rest, be
 from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.shooting.by_receptance import by_receptance, receptance_refusal, solve_by_receptance
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
@@ -28,7 +27,6 @@ Applies = Callable[[Scene, FrictionLaw], bool]
 Solve = Callable[[Sequence[Scene], FrictionLaw, float], Answers]
 
 CASES: tuple[tuple[Applies, Solve], ...] = (
-    (by_receptance, solve_by_receptance),
     (lambda scene, _law: scene.degrees_of_freedom == 0, solve_prescribed),
     (lambda scene, _law: scene.undriven, solve_undriven),
     (saturates_in_the_plane, solve_saturated),
@@ -47,6 +45,10 @@ CREEPS = (
     "steady but that of the unstretched spring; leave initial out, or give a belt speed"
 )
 
+TABLE = (
+    "shooting follows a mass on a spring and a dashpot, and body.receptance is a table: use relay_locus, which takes "
+    "Coulomb friction on it, or give the body by its numbers"
+)
 NO_HARMONICS = (
     "on a body that remembers shooting needs a drive, over whose harmonics its memory is fitted by springs; without "
     "one it follows standard linear solids alone"
@@ -78,13 +80,11 @@ class Shooting(Method):
 
     Without a drive the period is an unknown, too, and the answer is the state reached from ``scene.initial``:
     steady sliding, a cycle or rest. Under a prescribed slip the mean is computed by quadrature, or from the
-    closed loop of the memory. Of a body given by its receptance the motion of the free mass is integrated,
-    under a force found by balancing harmonics.
+    closed loop of the memory.
 
     References
     ----------
-    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023); balance:
-    Darbre & Wolf (1988).
+    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
 
     Examples
     --------
@@ -100,7 +100,9 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
-        if reason := beyond_linear(self.name, scene, (*BENDING, *REMEMBERING, BY_TABLE)) or about_rest(
+        if BY_TABLE in scene.body_terms:
+            return TABLE
+        if reason := beyond_linear(self.name, scene, (*BENDING, *REMEMBERING)) or about_rest(
             self.name, scene
         ):
             return reason
@@ -108,8 +110,6 @@ class Shooting(Method):
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
-        if by_receptance(scene, law):
-            return receptance_refusal(scene, law)
         if scene.undriven and scene.remembers and not is_exact(scene):
             return NO_HARMONICS
         if scene.undriven and scene.remembers and starts_to_creep(scene):

@@ -122,6 +122,8 @@ class Undriven:
     def _accuracy(self) -> float:
         """Of maps that are to follow the motion no worse than the mean is asked for."""
         of_belt = OF_BELT_SPEED * abs(self._path.speed) / self._path.mass.normal_load or FOLLOWED
+        if self.law.memory_kind == "scalars":  # steps follow slow slip by its logarithm
+            of_belt = FOLLOWED
         return max(min(0.1 * self.tolerance, FOLLOWED, of_belt), LEAST)
 
     @property

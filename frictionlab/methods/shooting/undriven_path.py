@@ -274,7 +274,7 @@ class UndrivenPath:
 
 FIRST_SPAN, LONGEST = 2.0, 1e15
 """Turns of the first span in which a passage is looked for, and turns without one after which none is."""
-SHORTER, FEW_STEPS = 0.25, 5000
+SHORTER, FEW_STEPS = 0.05, 5000
 """Length of a span followed anew, over that of one that took too many steps; steps of one that may be longer."""
 BEFORE = 0.9
 """Turns of the first span of a passage, over those of the last passage: what comes behind is followed twice."""
@@ -482,8 +482,8 @@ class Passages:
 
 REPELS = 1.05
 """Multiplier of a cycle that surely repels."""
-COARSEST_CLOSED, OF_BELT_SPEED = 1e-6, 1e-5
-"""The coarsest accuracy of maps that close a cycle, per normal load and per belt speed."""
+COARSEST_CLOSED = 1e-6
+"""Coarsest accuracy of maps that close a cycle, per normal load."""
 MOST_NEWTON, MOST_DERIVATIVES = 16, 4
 """Steps of Newton's method, and how often derivatives are found anew for them."""
 CHANCE = 0.15
@@ -558,27 +558,33 @@ def close_cycle(section: Passages, state: Floats, passages: int, tolerance: floa
     Its mean is that of the last of three or more closed cycles, each of maps FINER times finer than the one before.
     Raises NotFound.
     """
-    path = section.path
-    coarsest = min(COARSEST_CLOSED, OF_BELT_SPEED * abs(path.speed) / path.mass.normal_load)
-    accuracy, means, error = max(min(tolerance, coarsest), LEAST), list[float](), math.inf
-    matrix = section.derivative(state, passages)
+    coarsest = accuracy = max(min(tolerance, COARSEST_CLOSED), LEAST)
+    means, found, matrix = list[float](), None, section.derivative(state, passages)
     while True:
-        found = _newton(section, state, passages, matrix, accuracy)
-        if found is None:
+        one = _newton(section, state, passages, matrix, accuracy)
+        # finer than rounding allows: the third of three is then a coarser one
+        last = one is None and len(means) > 1
+        if last:
+            one = _newton(section, state, passages, matrix, coarsest * FINER)
+        if one is None and (means or accuracy <= section.accuracy):
             return None
-        if not means:
-            found = found._replace(matrix=section.derivative(found.state, passages))
+        if one is not None and last:
+            means.insert(0, one.mean)
+        elif one is not None:
+            found = one if means else one._replace(matrix=section.derivative(one.state, passages))
             if not found.multiplier < REPELS:
                 return found._replace(error=math.nan)
-        means.append(found.mean)
-        if len(means) > 2:
+            means.append(found.mean)
+            state, matrix, within = found.state, found.matrix, accuracy
+        if found is not None and len(means) > 2:
             changed = max(abs(means[-1] - means[-2]), CHANCE * abs(means[-2] - means[-3]))
-            steps = 10.0 * accuracy / (found.turns * TURN)
+            steps = 10.0 * within / (found.turns * TURN)
             error = interpreted(stated_error)(changed, 0.5 * found.error, steps)
-        if error <= tolerance or accuracy <= LEAST:
-            # derivatives that closed it are those of the guess, or of a step on the way
-            return found._replace(error=error, matrix=section.derivative(found.state, passages, QUOTIENTS))
-        state, matrix, accuracy = found.state, found.matrix, max(accuracy / FINER, LEAST)
+            if last or error <= tolerance or accuracy <= LEAST:
+                # derivatives that closed it are those of the guess, or of a step on the way
+                fine = section.derivative(found.state, passages, QUOTIENTS)
+                return found._replace(error=error, matrix=fine)
+        accuracy = max(accuracy / FINER, LEAST)
 
 
 def close_shortest(section: Passages, state: Floats, passages: int, tolerance: float) -> Cycle | None:
@@ -601,7 +607,10 @@ def _newton(section: Passages, state: Floats, passages: int, matrix: Floats, acc
     path, mean, size, derivatives = section.path, math.nan, math.inf, 0
     noise, far = accuracy * path.mass.normal_load, path.from_sliding(state)
     for count in range(MOST_NEWTON):
-        image = section.around(state, passages, accuracy)
+        try:
+            image = section.around(state, passages, accuracy)
+        except TooLong:
+            return None
         if image is None or not np.isfinite(matrix).all():
             return None
         before, mean = mean, float(interpreted(mean_friction)(image.impulse, image.turns * TURN))

@@ -121,6 +121,37 @@ def test_the_error_of_a_limit_cycle_covers_what_a_finer_tolerance_changes(law, b
     assert fine["error"] <= 1e-9
 
 
+@pytest.mark.parametrize(
+    ("damping", "load", "speed", "curve", "mean"),
+    [
+        (
+            0.0029122176666168133,
+            0.2083768156797429,
+            0.003205888971336392,
+            (0.5699872214489293, 0.7409833878836082, 0.018012673980178487),
+            0.6304118435730918,
+        ),
+        (
+            0.004450179788684122,
+            0.3637919905793481,
+            0.01857349272698259,
+            (0.6914213084595427, 1.3828426169190855, 0.0695490922088892),
+            0.8506224335164071,
+        ),
+    ],
+)
+def test_friction_that_falls_like_a_root_from_rest_has_the_mean_of_another_integration(
+    damping, load, speed, curve, mean
+):
+    """DOP853 (scipy, 1e-12) from the onset of slip to stick, stick in closed form."""
+    kinetic, static, scale = curve
+    law = Stribeck(mu_kinetic=kinetic, mu_static=static, stribeck_speed=scale, stribeck_exponent=0.5)
+    status, row, _, _ = solve(law, speed, damping_ratio=damping, normal_load=load)
+
+    assert status == "ok"
+    assert abs(row["mean_friction"] - mean) <= row["error"] + 1e-9
+
+
 def test_the_state_is_the_one_reached_from_the_start():
     # Two states attract here: steady sliding, and stick-slip around it.
     law = Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)

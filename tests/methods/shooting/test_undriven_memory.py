@@ -82,6 +82,52 @@ def test_the_slider_of_canudas_de_wit_in_si_units_is_that_without() -> None:
     assert found.period == pytest.approx(float(CANUDAS["period"]), abs=1e-7)
 
 
+STAGE = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=0.01, presliding_length=1e-3, damping=1.0)
+ROCK = RateAndState(mu=0.6, a=0.005, b=0.01, slip_length=1e-3, reference_speed=1e-9)
+
+
+def test_on_a_belt_of_a_micrometre_a_second_bristles_end_in_steady_sliding() -> None:
+    """1 kg on 10 N/mm: the spring takes a hundred thousand periods to stretch. LSODA ends there, too."""
+    found = fl.steady_state(fl.Scene(damping_ratio=0.005, normal_load=1, belt_speed=1e-5), STAGE)
+
+    assert "undriven sliding" in found.model
+    assert found.mean_friction == pytest.approx(STAGE.sliding_friction(1e-5), abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("law", "damping", "speed", "mean"),
+    [
+        pytest.param(STAGE, 0.005, 1e-3, 0.306210612, id="slow stage"),
+        *(
+            pytest.param(ROCK, 0.0, speed, mean, id=f"laboratory slider at {speed}", marks=compiling)
+            for speed, mean in [(1e-5, 0.515436138), (3e-5, 0.515383438), (1e-4, 0.515367543)]
+        ),
+    ],
+)
+def test_slow_belts_have_one_plain_cycle(law: Any, damping: float, speed: float, mean: float) -> None:
+    """Radau (scipy) to 1e-10; of the slider in the logarithms of slip and age, the mean to 1e-6."""
+    found = fl.steady_state(fl.Scene(damping_ratio=damping, normal_load=1, belt_speed=speed), law)
+
+    assert (found.status, found.model.split(" (")[0]) == ("ok", "undriven stick-slip")
+    assert abs(found.mean_friction - mean) <= found.error + (1e-6 if law is ROCK else 1e-9)
+
+
+@deep("seconds of maps a decade")
+def test_means_of_slow_belts_are_smooth_over_nine_decades() -> None:
+    """A slider whose friction falls by a logarithm: neither its mean nor its period knows how slow the belt is."""
+    states = [
+        fl.steady_state(fl.Scene(damping_ratio=0.0, normal_load=1, belt_speed=10.0**power), ROCK)
+        for power in np.arange(-8.5, 0.6, 0.5)
+    ]
+    means, periods = (
+        np.array([getattr(each, name) for each in states]) for name in ("mean_friction", "period")
+    )
+
+    assert [each.status for each in states] == ["ok"] * len(states)
+    assert np.abs(np.diff(means, n=3)).max() < 1e-3
+    assert (np.diff(np.log(periods), n=2) > -0.01).all()
+
+
 def test_the_orbit_of_a_cycle_closes_and_feeds_the_columns() -> None:
     scene, law = of(CANUDAS)
 

@@ -334,8 +334,8 @@ def _friction(
     if state.status == "not_unique" and isinstance(law, BristleLaw):
         return _elastic(law.under_load(normal_load), pair, frequency, count)
     if state.status == "not_unique" and isinstance(law, MemoryLaw):
-        orbit = MemoryPoint(scene, law, _TOLERANCE).orbit_from_rest()
-        motion = OrbitOf(lambda _: orbit, scene, law)
+        ends = MemoryPoint(scene, law, _TOLERANCE).ends()
+        motion = OrbitOf(lambda _: ends[-1].orbit if ends else None, scene, law)
     found = [motion and motion.harmonics(count, across) for across in (False, True)]
     if not all(found):
         raise ValueError(f"describing_function: {state.reason}")

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import field_validator
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.motion.orbit.record import Orbit, Orbits
+from frictionlab.motion.orbit.record import End, Orbit, Orbits
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
@@ -33,7 +33,7 @@ def no_orbit(i: int) -> None:
     """Of answers without orbits."""
 
 
-def no_states(i: int) -> list[FoundState]:
+def none_found(i: int) -> list[Any]:
     """Of answers that know of no other states."""
     return []
 
@@ -59,7 +59,8 @@ class Answers:
     floquet(): largest modulus of the multipliers of each, found when asked for, as closely as the method needs it;
     multipliers(): as the table tells it, with its error; left out, floquet() is told. orbit(i): the orbit of scene i,
     made when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
-    states(i): where a state is not unique, those that its starts reached.
+    states(i): where a state is not unique, those that its starts reached. ends(i): where the mean may be any in a
+    range, where starts end; the columns in which all of them agree are told.
     unique: of ok answers PROVED, with the theorem in their model, TESTED, with the starts in their reason, NOT_UNIQUE
     of a state that only scene.initial chooses, or '' where nothing was asked; left out where nothing ever is.
     balanced: whether orbits obey the equation of motion but for numerical errors; energies of others have no errors.
@@ -81,7 +82,8 @@ class Answers:
     unique: Sequence[str] | None = None
     orbit: Callable[[int], Orbit | None] = field(default=no_orbit, repr=False)
     orbits: Callable[[], Orbits] | None = field(default=None, repr=False)
-    states: Callable[[int], list[FoundState]] = field(default=no_states, repr=False)
+    states: Callable[[int], list[FoundState]] = field(default=none_found, repr=False)
+    ends: Callable[[int], list[End]] = field(default=none_found, repr=False)
     balanced: bool = True
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
 from frictionlab.methods.periodic.period_map import size_of_deviation
@@ -22,9 +24,10 @@ from frictionlab.methods.periodic.setting import (
     write_sliding_state,
     write_state,
 )
-from frictionlab.methods.periodic.steady_sliding import NEAR
+from frictionlab.methods.periodic.steady_sliding import NEAR, memory_of_sliding
 from frictionlab.motion.equation import mean_friction
 from frictionlab.motion.linalg import copy, multiply, norm, radius_bound, subtract
+from frictionlab.values.quantities import Floats
 
 MOST_PERIODS = 5000
 PATIENCE = 300
@@ -166,6 +169,26 @@ def write_start(maps: Maps, start: Any, state: Any) -> None:
     """Fill the state of a start (x, v, deflection); see ``write_state``."""
     x, v, deflection = start
     write_state(maps, state, x, v, deflection)
+
+
+MOST_CORNERS = 4
+"""Largest number of deflections that are combined in all directions.
+
+If there are more, all deflections start in one direction, then all in the other."""
+
+
+def corners(maps: Any, law: Any, size: int, place: tuple[complex, complex], speed: float) -> list[Floats]:
+    """Return states at a place with deflections as in steady sliding in either direction; the last has none."""
+    sides = np.empty((3, size))
+    for row, z in enumerate((memory_of_sliding(law, speed), memory_of_sliding(law, -speed), 0.0)):
+        KernelCall(write_start)(maps, (*place, complex(z)), sides[row])
+    moved = np.flatnonzero(sides[0] != sides[1])
+    choices = product((0, 1), repeat=len(moved)) if len(moved) <= MOST_CORNERS else [(0,), (1,)]
+    found = []
+    for choice in choices:
+        found.append(sides[0].copy())
+        found[-1][moved] = sides[np.broadcast_to(choice, moved.shape), moved]
+    return [*found, sides[2]]
 
 
 ARRIVED, VERY_NEAR, FALLEN = -1, 1e-5, 0.1

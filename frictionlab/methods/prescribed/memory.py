@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -15,9 +14,9 @@ from frictionlab.methods.base import Status
 from frictionlab.methods.periodic.attraction import (
     Follow,
     Trail,
+    corners,
     iterate_until_periodic,
     unknown_orbit,
-    write_start,
 )
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
@@ -26,7 +25,7 @@ from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.words import ModelWord
-from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.record import End, Orbit
 from frictionlab.scene.body import BodyNumbers, Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.varying import packed
@@ -37,19 +36,10 @@ PERIODS = 100
 """Number of periods for which a memory that does not forget is followed from each start."""
 FORGETS = 1.0 - 1e-6
 """Largest multiplier of a memory that converges from every start."""
-MOST_CORNERS = 4
-"""Largest number of deflections whose starts are tried in all combinations of direction.
-
-If there are more, all deflections start in one direction, then all in the other."""
-INSIDE = 0.999
-"""Fraction of the deflection of steady sliding at which starts begin.
-
-At the limit itself rounding would decide whether an element yields."""
-ROUGH, FINE, SAME_MEAN = 1e-6, 1e-9, 1e-6
-"""Accuracies of maps with which starts are followed, over the normal load, and largest range of equal means.
-
-The range is that of means found with fine maps."""
+FINE, SAME_MEAN = 1e-9, 1e-6
+"""Accuracy of maps with which starts are followed, over the normal load, and largest range of equal means."""
 HOLDS = "a deflection that never yields keeps what it began with"
+WANDERS = "the memory does not converge from different starts"
 TWO_STARTS = "2 starts ended here, with no memory and with that of steady sliding"
 
 
@@ -67,33 +57,35 @@ class MemoryPoint:
         self.reason, self.model = "", str(ModelWord.PRESCRIBED_MEMORY)
         self.error_kind, self.seconds = "estimated", 0.0
         self.curve: Curve | None = None
-        self.from_rest: Floats | None = None
+        self.reached: list[Floats] = []
         self.tested = ""
-        moves = self.belt_speed != 0.0 or self._swing() > 0.0
-        self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
+        self.found = self._answer(tolerance) if self._fastest() > 0.0 else self._left_open([], "no slip")
 
-    def _swing(self) -> float:
-        """Return a bound on the speed of the oscillation."""
+    def _fastest(self) -> float:
+        """Return a bound on the speed of the slip."""
+        belt = abs(self.belt_speed)
         if self.slip is not None:
-            return self.slip.along.size() + self.slip.across.size()
-        return abs(self.motion.velocity) + abs(self.motion.transverse_velocity)
+            return belt + self.slip.along.size() + self.slip.across.size()
+        return belt + abs(self.motion.velocity) + abs(self.motion.transverse_velocity)
 
     def _answer(self, tolerance: float) -> PrescribedMean:
         guess = np.zeros((1, interpreted(size_of)(self.law, self.zero)))
         self.goal = Goal(tolerance, False, True, False)
         curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
-        if not curve.closed.found[0] or not curve.reached[0] or multiplier > FORGETS:
-            return self._followed(guess[0])
-        if self.belt_speed == 0.0 and self.law.memory_kind == "deflections":
-            # The belt is at rest: a slider that never yields keeps the deflection it began with. The mirror
-            # image of a state is a state half a period later.
-            means = [float(curve.closed.mean[0]), *self._followed_from(self._corners(guess[0].size), FINE)]
-            if self.slip is None and self.law.obeys("oddness"):
+        forgets = curve.closed.found[0] and curve.reached[0] and multiplier <= FORGETS
+        deflects = self.law.memory_kind != "scalars"
+        if not forgets or (self.belt_speed == 0.0 and deflects):
+            # On a belt at rest a slider that never yields keeps the deflection it began with.
+            place = 0j, 0j
+            means = self._followed_from(corners(self.maps, self.law, guess[0].size, place, self._fastest()))
+            if forgets:
+                means.append(float(curve.closed.mean[0]))
+            if self.belt_speed == 0.0 and self.slip is None and self.law.obeys("oddness"):
+                # The mirror image of a state is a state half a period later.
                 means += [-mean for mean in means]
-            if max(means) - min(means) > max(float(curve.closed.error[0]), SAME_MEAN):
-                self.from_rest = curve.states[0]
-                return self._left_open(means, HOLDS)
+            if not forgets or max(means) - min(means) > max(float(curve.closed.error[0]), SAME_MEAN):
+                return self._left_open(means, HOLDS if deflects else WANDERS)
         self.curve = curve
         constants = curve.reached[0] * -math.log(max(multiplier, 1e-300))
         self.tested = (
@@ -108,48 +100,19 @@ class MemoryPoint:
         self.seconds += seconds
         return curve
 
-    def _followed(self, state: Floats) -> PrescribedMean:
-        """Follow the memory from steady sliding in either direction, then from rest; keep the last state."""
-        swing, starts = self._swing() + abs(self.belt_speed), []
-        for side in (1.0, -1.0, 0.0):
-            KernelCall(write_start)(self.maps, (0j, 0j, complex(side * swing)), state)
-            starts.append(state.copy())
-        return self._left_open(
-            self._followed_from(starts), "the memory does not converge from different starts"
-        )
-
-    def _corners(self, size: int) -> list[Floats]:
-        """Return starts with deflections as in steady sliding in either direction; the last is from rest."""
-        sides = np.empty((3, size))
-        for row, side in enumerate((1.0, -1.0, 0.0)):
-            KernelCall(write_start)(self.maps, (0j, 0j, complex(side * self._swing())), sides[row])
-        moved = np.flatnonzero(sides[0] != sides[1])
-        choices = product((0, 1), repeat=len(moved)) if len(moved) <= MOST_CORNERS else [(0,), (1,)]
-        corners = []
-        for choice in choices:
-            corner = sides[2].copy()
-            corner[moved] = INSIDE * sides[np.broadcast_to(choice, moved.shape), moved]
-            corners.append(corner)
-        return [*corners, sides[2]]
-
-    def _followed_from(self, starts: list[Floats], accuracy: float = ROUGH) -> list[float]:
-        """Return the mean of the last period from each start; keep the state reached from the last start.
-
-        A start is left out if its state repeats only after two periods or more: it is then at a limit, where
-        rounding decides whether an element yields.
-        """
+    def _followed_from(self, starts: list[Floats]) -> list[float]:
+        """Return the mean of the last period from each start; keep the states reached."""
         means: list[float] = []
         for start in starts:
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(start)))
             states[0] = start
-            how = Follow(accuracy * self.motion.normal_load, False)
+            how = Follow(FINE * self.motion.normal_load, False)
             orbit, trail = unknown_orbit(len(start)), Trail(each, states)
             arguments = self.maps, self.belt_speed, self.body.periods, how, orbit, trail
-            (repeats, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
+            (_, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
             self.seconds += seconds
-            if repeats <= 1:
-                means.append(float(each[count - 1]))
-            self.from_rest = states[count]
+            means.append(float(each[count - 1]))
+            self.reached.append(states[count])
         return means
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
@@ -163,9 +126,10 @@ class MemoryPoint:
         """Return one period of the prescribed motion with its friction; None if the memory was not found."""
         return None if self.curve is None else self._recorded(self.curve.states)
 
-    def orbit_from_rest(self) -> Orbit | None:
-        """Return the orbit of the memory followed from rest, if the mean depends on the start; else None."""
-        return None if self.from_rest is None else self._recorded(self.from_rest[None])
+    def ends(self) -> list[End]:
+        """Return where starts ended, that from rest last, if the mean depends on the start."""
+        reached = self.reached if self.status == "not_unique" else []
+        return [End(self._recorded(state[None]), self.goal.tolerance) for state in reached]
 
     def _recorded(self, states: Floats) -> Orbit:
         found = self._called(states, RECORDED)

@@ -23,7 +23,7 @@ from frictionlab.methods.prescribed.varying_legs import LegsPoint
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
-from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.record import End, Orbit
 from frictionlab.motion.orbit.recorder import NODES, interpolation_weights
 from frictionlab.scene.scene import Scene, Slip
 from frictionlab.theory.sliding_stability import saturates
@@ -133,6 +133,11 @@ def _told_uniqueness(row: Point) -> str:
     return PROVED
 
 
+def _ends(row: Point) -> list[End]:
+    """Where starts end, of a memory that keeps what it began with."""
+    return row.ends() if isinstance(row, MemoryPoint) else []
+
+
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
     rows = [_point(scene, law, tolerance) for scene in each_told(scenes)]
@@ -157,4 +162,5 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
         unique=unique,
         seconds=np.array([row.seconds for row in rows]),
         orbit=lambda i: rows[i].orbit(),
+        ends=lambda i: _ends(rows[i]),
     )

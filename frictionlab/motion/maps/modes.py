@@ -249,10 +249,12 @@ def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
     reverses = guard_of(flow, n, w, a, work).value <= 0.0
     for k in range(n):
         # slip that reverses on the line unloads every deflection that yields at once
-        passed = guard_of(flow, k, w, a, work).value <= 0.0
+        guard = guard_of(flow, k, w, a, work)
+        passed = guard.value <= 0.0
         if work.mode[k] == YIELDS and (passed or (reverses and _unloads_by_reversal(work))):
             work.mode[k] = FOLLOWS
-        elif work.mode[k] == FOLLOWS and passed:
+        # a deflection that meets its limit just as slip reverses is unloaded, too, and does not yield
+        elif work.mode[k] == FOLLOWS and passed and guard.rate < 0.0:
             work.mode[k] = YIELDS
     return -flow.side if reverses else flow.side
 

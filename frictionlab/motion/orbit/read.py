@@ -23,7 +23,7 @@ from frictionlab.motion.equation import (
     slip,
 )
 from frictionlab.motion.orbit.energy_errors import FOR_ERRORS, Means, energy_errors
-from frictionlab.motion.orbit.record import Orbit, Orbits
+from frictionlab.motion.orbit.record import End, Orbit, Orbits
 from frictionlab.motion.orbit.recorder import NODES, WEIGHTS, differentiate_panel, interpolate, zero_between
 from frictionlab.scene.body import Mass, for_kernels
 from frictionlab.scene.scene import Scene
@@ -57,6 +57,8 @@ _SUMS = "duration", "misfit_load", "misfit_speed"
 SUMMED = np.array(["energy" in name or "reversals" in name or name in _SUMS for name in READ])
 """Mask of the columns of ``READ`` that are sums and counts over the whole record; all others are means,
 phases or extremes."""
+ALIKE = 1e-5
+"""Largest difference, over its size, of a column of orbits that agree."""
 
 
 def read_columns(
@@ -64,12 +66,15 @@ def read_columns(
     orbit: Callable[[int], Orbit | None],
     orbits: Callable[[], Orbits] | None = None,
     means: Means | None = None,
+    ends: Callable[[int], Sequence[End]] = lambda i: (),
 ) -> dict[str, Floats]:
     """Return every column of ``FROM_ORBITS`` for scenes that differ in belt speed alone.
 
     Columns that do not apply are NaN.
 
-    means: mean friction of each scene, for the errors of energies; these are left out without it. orbit:
+    ends: returns orbits of a scene whose mean may be any in a range; the columns in which they agree are
+    told, their difference as a part of the error. means: mean friction of
+    each scene, for the errors of energies; these are left out without it. orbit:
     returns the orbit of one scene, None if it has none. orbits: returns all of them at once, where that is
     cheaper.
     """
@@ -83,14 +88,33 @@ def read_columns(
             READ.index(f"energy_{name}") for name in ("input", "viscous", "friction")
         )
         found[:, viscous] = found[:, put_in] - found[:, friction]
+    apart, alike = np.zeros(found.shape), np.ones(found.shape, np.bool_)
+    for i in np.flatnonzero(np.isnan(found[:, 0])).tolist():
+        if each := ends(i):
+            rows = [_read_one(scenes[i], end.orbit) for end in each]
+            found[i], apart[i] = rows[-1], np.ptp(rows, axis=0)
+            alike[i] = apart[i] <= ALIKE * _sizes(scenes[i], found[i])
+            if means is not None:
+                means.value[i], means.error[i] = found[i, 0], max(end.error for end in each)
     found[:, _not_there(scenes[0])] = np.nan
-    columns = {name: found[:, place].copy() for place, name in enumerate(READ)}
+    columns = {name: np.where(alike[:, place], found[:, place], np.nan) for place, name in enumerate(READ)}
     if means is not None:
-        errors = energy_errors(scenes, _mass(scenes[0]), means, columns)
+        told = dict(zip(READ, found.T, strict=True))
+        errors = energy_errors(scenes, _mass(scenes[0]), means, told)
         for error, values in errors.items():
-            values[np.isnan(columns[error.removesuffix("_error")])] = np.nan
+            name = error.removesuffix("_error")
+            values += apart[:, READ.index(name)]
+            values[np.isnan(columns[name])] = np.nan
         columns |= errors
     return {name: columns[name] for name in FROM_ORBITS if name in columns}
+
+
+def _sizes(scene: Scene, row: Floats) -> Floats:
+    """Return what differences of each column are compared with: a work of the load, a velocity, else one."""
+    swing, duration = row[READ.index("swing")], row[READ.index("duration")]
+    work = _mass(scene).normal_load * swing * duration
+    least = [work if "energy" in name else swing if "velocity" in name else 1.0 for name in READ]
+    return np.fmax(np.abs(row), least)
 
 
 def _not_there(scene: Scene) -> list[bool]:

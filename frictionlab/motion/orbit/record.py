@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,13 @@ class Orbit:
     friction: NDArray[np.complex128]
     stick: NDArray[np.bool_] | None
     periods: int = 1
+
+
+class End(NamedTuple):
+    """Orbit of one of many states, whose means fill a range, and the bound on the error of its own mean."""
+
+    orbit: Orbit
+    error: float
 
 
 @dataclass(frozen=True)

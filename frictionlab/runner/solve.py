@@ -136,9 +136,7 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
         from frictionlab.motion.orbit.read import read_columns  # brings numba: only where it is needed
 
         asks_errors = any(name.endswith("_error") for name in wanted)
-        means = (
-            Means(answers.mean.real.copy(), answers.error.copy(), answers.balanced) if asks_errors else None
-        )
+        means = Means(answers.mean.real, answers.error, answers.balanced) if asks_errors else None
         found |= read_columns(scenes, answers.orbit, answers.orbits, means, answers.ends)
     spent = time.perf_counter() - seconds_compiling() - start
     found["seconds"] = found["seconds"] + spent / len(scenes)

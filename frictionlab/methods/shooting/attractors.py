@@ -8,17 +8,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
-from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
+from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit, corners
 from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS, Curve
 from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, along_the_belt, largest_modulus
-from frictionlab.methods.shooting.leaps import Leaper
+from frictionlab.methods.shooting.leaps import Leaper, newton
 from frictionlab.methods.shooting.long_mean import LongMean
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Initial, Scene
@@ -50,6 +50,16 @@ DECAYS, CLIMBS = 30.0, 2.0
 """Time constants after which nothing is left of a start, and distance that a belt carries a mass to its mean.
 
 The distance is at most this multiple of the deflection of the spring under the friction force."""
+
+
+NEUTRAL = 1e-5
+"""Largest change by a map, over a small deviation, of one that the map leaves as it is."""
+MOST_STEPS = 12
+"""Number of Newton's steps to a state that a map leaves as it is."""
+SHIFT, LAST_WAY, RISES = 1e-4, 1e-6, 1e-8
+"""Deviation by which a slope is measured, last way led up it, and smallest rise of the mean that counts.
+
+The first two are over the size of the states."""
 
 
 @dataclass(frozen=True)
@@ -336,12 +346,23 @@ def all_starts(
     return [*first, *([] if smooth in first else [smooth])], [*others, *resting_starts(scene, law, more)]
 
 
+class Held(NamedTuple):
+    """State that a map leaves as it is, its mean friction, and its neutral ways.
+
+    neutral [n, size]: orthonormal directions in which a map leaves neighbours as they are, too.
+    """
+
+    state: Floats
+    mean: float
+    neutral: Floats
+
+
 @dataclass(frozen=True)
 class DrivePeriods:
     """Map of a driven motion over one period of all that varies, as leaps ask for it."""
 
     problem: PeriodicProblem
-    belt_speed: float
+    scene: Scene
 
     @property
     def noise(self) -> float:
@@ -354,14 +375,64 @@ class DrivePeriods:
 
     def mapped(self, states: Floats) -> Floats:
         """Return the images of states [count, size]."""
-        return self.problem.mapped(np.full(len(states), self.belt_speed), states)
+        return self.problem.mapped(np.full(len(states), self.scene.belt_speed), states)
 
     def derivative(self, state: Floats) -> Floats:
         """Return the monodromy matrix at a state."""
-        problem, speeds = self.problem, np.array([self.belt_speed])
+        problem, speeds = self.problem, np.array([self.scene.belt_speed])
         curve, _ = problem.called(speeds, state[None].copy(), problem.goal, MULTIPLIERS)
         matrix: Floats = curve.matrices[0]
         return matrix
+
+    def means(self, states: Floats) -> Floats:
+        """Return the mean friction in the period from each of states [count, size]."""
+        return self.problem.repeated_once(self.scene, states)[1]
+
+    def held(self, state: Floats) -> Held | None:
+        """Return where the motion from a state ends, by true maps and then by Newton's; None if there is none.
+
+        Newton's steps are the shortest, so that they lead along no neutral way.
+        """
+        state = self.problem.carried(self.scene.belt_speed, state, FEWEST).state
+        for _ in range(MOST_STEPS):
+            base, matrix = self.mapped(state[None])[0] - state, self.derivative(state)
+            if not np.isfinite(matrix).all():
+                return None
+            if np.linalg.norm(base) <= 100.0 * self.noise:
+                _, changes, ways = np.linalg.svd(matrix - np.eye(len(base)))
+                return Held(state, float(self.means(state[None])[0]), ways[changes < NEUTRAL])
+            state = state + newton(matrix, base)
+        return None
+
+    def farthest(self, here: Held, side: float, size: float) -> Held:
+        """Return the state of a continuum with the largest mean (side 1) or the smallest (-1), from one of it.
+
+        Lead it along the neutral ways up the slope of the mean, and back onto the continuum by true maps, until
+        no mean is larger. size: of the states.
+        """
+        way, up = size, np.zeros_like(here.state)
+        while way > LAST_WAY * size:
+            if len(here.neutral):  # next to an end of the continuum quotients see no neighbours that are held
+                slopes = self.means(here.state + SHIFT * size * here.neutral) - here.mean
+                up = side * slopes @ here.neutral / np.linalg.norm(slopes)
+            there = self.held(here.state + way * up)
+            rises = there is not None and side * (there.mean - here.mean) > RISES
+            here, way = (there, way) if there is not None and rises else (here, 0.4 * way)
+        return here
+
+    def continuum(self) -> list[Held]:
+        """Return states of a continuum that no map changes, both with the farthest means among them.
+
+        They are the ends of starts with no deflection and with the deflections of steady sliding. Return none
+        if the state in the middle of these ends has no such neighbours.
+        """
+        starts = corners(self.problem.maps, self.problem.law, self.problem.size, (0j, 0j), 1.0)
+        ends = [end for start in starts if (end := self.held(start)) is not None]
+        middle = self.held(np.mean([end.state for end in ends], axis=0)) if ends else None
+        if middle is None or not len(middle.neutral):
+            return []
+        size = max(map(self.size, starts))
+        return [*ends, *(self.farthest(middle, side, size) for side in (-1.0, 1.0))]
 
 
 class FollowedStarts:
@@ -444,7 +515,7 @@ class FollowedStarts:
 
     def _led(self, state: Floats) -> tuple[Attractor | None, int]:
         """Return the closed one-period orbit to which leaps lead from a state, or None, and the periods."""
-        leaper = Leaper(DrivePeriods(self._problem, self._scene.belt_speed), state)
+        leaper = Leaper(DrivePeriods(self._problem, self._scene), state)
         orbits: dict[int, Attractor] = {}
 
         def known() -> list[KnownOrbit]:

@@ -30,6 +30,7 @@ from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
     MOST,
     Attractor,
+    DrivePeriods,
     FollowedStarts,
     Trial,
     carried_for,
@@ -47,7 +48,7 @@ from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, is_earned, sp
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
-from frictionlab.motion.orbit.record import Orbit, Orbits
+from frictionlab.motion.orbit.record import End, Orbit, Orbits
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.linear import velocity_scale
@@ -71,8 +72,8 @@ SURELY = 1e-6
 CENTRAL = 1e-6
 """Error of multipliers by central quotients of a law without memory, absolute or of those above one."""
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
-HELD_ELASTICALLY = (
-    "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
+HELD = (
+    "on a belt at rest a deflection that never yields keeps what it began with: the mean depends on the start"
 )
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
 MISFIT = (
@@ -153,6 +154,7 @@ class SteadyStates:
         self.unique = [""] * n
         self.tried: dict[int, Trial] = {}
         self.followed: dict[int, FollowedStarts] = {}
+        self.continua: dict[int, list[Floats]] = {}
         self.repelling: set[int] = set()
         self.mean: Complexes = np.full(n, UNKNOWN)
         self.error, self.low, self.high, self.window = np.full((4, n), np.nan)
@@ -229,11 +231,11 @@ class SteadyStates:
 
     def check_attraction(self, i: int) -> None:
         """Keep an answer that no theorem makes unique only where starts far from it end there."""
-        if self._holds_elastically(i):
-            law: Any = self.problem.law
-            most = abs(law.friction(0.0, law.elastic_deflection(), 0.0))
+        if self._may_hold(i) and (continuum := DrivePeriods(self.problem, self.scenes[i]).continuum()):
+            means = [each.mean for each in continuum]
             self._clear(i)
-            self._leave_open(i, HELD_ELASTICALLY, -most, most)
+            self._leave_open(i, HELD, min(means), max(means))
+            self.continua[i] = [each.state for each in continuum]
         elif self.problem.goal.check_attraction and self._attracts(i):
             at = quick_starts(self.problem, float(self.belt_speeds[i]))
             self.tried[i] = Trial.of(at, self.problem.mass.stiffness, self.reached[i])
@@ -315,6 +317,7 @@ class SteadyStates:
             orbit=self._orbit,
             orbits=None if STATISTICAL in self.error_kind else self._orbits,
             states=self._found_states,
+            ends=self._ends,
         )
 
     def _found_states(self, i: int) -> list[FoundState]:
@@ -383,11 +386,18 @@ class SteadyStates:
         """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
         return self.status[i] == "ok" and self.reached[i] > 0 and not self._known(i) > 1.0 + SURELY
 
-    def _holds_elastically(self, i: int) -> bool:
-        """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
-        if self.belt_speeds[i] != 0.0 or self.problem.law.elastic_deflection() == 0.0:
-            return False
-        return self.status[i] != "ok" or bool(self._known(i) > 1.0 - 1e-6)
+    def _may_hold(self, i: int) -> bool:
+        """Whether the belt is at rest and a deflection may only follow the mass: it then keeps what it began with."""
+        law = self.problem.law
+        return self.belt_speeds[i] == 0.0 and (
+            law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
+        )
+
+    def _ends(self, i: int) -> list[End]:
+        """Of a continuum."""
+        scene, states = self.scenes[i], self.continua.get(i, [])
+        made = [self.problem.orbits([scene], [state]).one(0) for state in states]
+        return [End(one, self.problem.goal.tolerance) for one in made if one is not None]
 
     def _compare_starts(self, i: int) -> None:
         """Keep an answer only where every start reaches it; else the one reached from scene.initial, or none."""

@@ -88,6 +88,7 @@ def read_columns(
             READ.index(f"energy_{name}") for name in ("input", "viscous", "friction")
         )
         found[:, viscous] = found[:, put_in] - found[:, friction]
+    means = means and means._replace(value=means.value.copy(), error=means.error.copy())
     apart, alike = np.zeros(found.shape), np.ones(found.shape, np.bool_)
     for i in np.flatnonzero(np.isnan(found[:, 0])).tolist():
         if each := ends(i):

@@ -398,10 +398,10 @@ class DrivePeriods:
             base, matrix = self.mapped(state[None])[0] - state, self.derivative(state)
             if not np.isfinite(matrix).all():
                 return None
+            state = state + newton(matrix, base)
             if np.linalg.norm(base) <= 100.0 * self.noise:
                 _, changes, ways = np.linalg.svd(matrix - np.eye(len(base)))
                 return Held(state, float(self.means(state[None])[0]), ways[changes < NEUTRAL])
-            state = state + newton(matrix, base)
         return None
 
     def farthest(self, here: Held, side: float, size: float) -> Held:

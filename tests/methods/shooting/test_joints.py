@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import cmath
+import math
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.compile.call import KernelCall
@@ -53,6 +58,56 @@ def test_a_prescribed_stroke_has_a_range_of_means_and_one_heat(
         assert (state.mean_low, state.mean_high) == pytest.approx((-most, most), abs=1e-7)
     elif most == 0.0:
         assert state.status == "ok"
+
+
+def by_steps(scene: fl.Scene, law: MaxwellSlip, periods: int, steps: int = 2000) -> tuple[float, float]:
+    """Half of the stroke and amplitude of the velocity, after so many periods of Runge-Kutta steps from rest."""
+    mass, reach, stiffness = scene.mass(), np.array(law.reach), np.array(law.stiffness)
+    z, state, path = np.zeros(len(reach)), np.zeros(2), np.empty((steps, 2))
+    h = 2.0 * math.pi / mass.frequency / steps
+
+    def rates(tau: float, at: Any) -> Any:
+        rub = stiffness @ np.clip(z + at[0] - state[0], -reach, reach)
+        push = (mass.force * cmath.exp(1j * mass.frequency * tau)).imag
+        return np.array(
+            [at[1], push - mass.damping * at[1] - mass.stiffness * at[0] - mass.normal_load * rub]
+        )
+
+    for _ in range(periods):
+        for k in range(steps):
+            first = rates(k * h, state)
+            second = rates((k + 0.5) * h, state + 0.5 * h * first)
+            third = rates((k + 0.5) * h, state + 0.5 * h * second)
+            last = rates((k + 1) * h, state + h * third)
+            moved = state + h / 6.0 * (first + 2.0 * second + 2.0 * third + last)
+            z, state = np.clip(z + moved[0] - state[0], -reach, reach), moved
+            path[k] = state
+    stroke, swing = 0.5 * np.ptp(path, axis=0)
+    return float(stroke), float(swing)
+
+
+@deep("thousands of steps in plain Python")
+@pytest.mark.parametrize("load", [0.3, 1.0, 1.7, 3.0])
+@pytest.mark.parametrize("reaches", [(0.2, 1.0, 2.0), (0.1, 0.15, 1.5)])
+def test_a_mass_held_by_a_joint_has_a_range_of_means_one_amplitude_and_one_heat(
+    reaches: tuple[float, ...], load: float
+) -> None:
+    law, drive = (
+        joint(list(zip(reaches, (1.0, 0.5, 0.5), strict=True))),
+        fl.Drive(amplitude=load, frequency=0.5),
+    )
+    scene = fl.Scene(damping_ratio=0.1, normal_load=1, belt_speed=0, drive=drive)
+    stroke, swing = by_steps(scene, law, 12)
+    most = most_of(law, stroke)
+
+    state = fl.steady_state(scene, law)
+
+    assert state.velocity_amplitude == pytest.approx(swing, rel=1e-5)
+    assert state.energy_contact == pytest.approx(heat_of(law, stroke), abs=2e-5)
+    assert state.stick_fraction == 0.0
+    assert state.status == ("not_unique" if most > 0.0 else "ok")
+    if most > 0.0:
+        assert (state.mean_low, state.mean_high) == pytest.approx((-most, most), abs=2e-5)
 
 
 def test_sliders_that_meet_their_limit_as_slip_reverses_are_unloaded() -> None:

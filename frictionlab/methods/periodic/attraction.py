@@ -182,13 +182,10 @@ def corners(maps: Any, law: Any, size: int, place: tuple[complex, complex], spee
     sides = np.empty((3, size))
     for row, z in enumerate((memory_of_sliding(law, speed), memory_of_sliding(law, -speed), 0.0)):
         KernelCall(write_start)(maps, (*place, complex(z)), sides[row])
-    moved = np.flatnonzero(sides[0] != sides[1])
-    choices = product((0, 1), repeat=len(moved)) if len(moved) <= MOST_CORNERS else [(0,), (1,)]
-    found = []
-    for choice in choices:
-        found.append(sides[0].copy())
-        found[-1][moved] = sides[np.broadcast_to(choice, moved.shape), moved]
-    return [*found, sides[2]]
+    moved = sides[0] != sides[1]
+    few = moved.sum() <= MOST_CORNERS
+    choices = product(*((False, True)[: 1 + each] for each in moved.tolist())) if few else (moved, ~moved)
+    return [*(np.where(choice, sides[0], sides[1]) for choice in choices), sides[2]]
 
 
 ARRIVED, VERY_NEAR, FALLEN = -1, 1e-5, 0.1

@@ -18,7 +18,7 @@ from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit, corners
 from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS, Curve
 from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, along_the_belt, largest_modulus
-from frictionlab.methods.shooting.leaps import Leaper, newton
+from frictionlab.methods.shooting.leaps import Leaper
 from frictionlab.methods.shooting.long_mean import LongMean
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Initial, Scene
@@ -393,29 +393,34 @@ class DrivePeriods:
 
         Newton's steps are the shortest, so that they lead along no neutral way.
         """
-        state = self.problem.carried(self.scene.belt_speed, state, FEWEST).state
+        way = self.problem.carried(self.scene.belt_speed, state, FEWEST)
+        state = way.state
         for _ in range(MOST_STEPS):
             base, matrix = self.mapped(state[None])[0] - state, self.derivative(state)
-            if not np.isfinite(matrix).all():
+            if (way.period == 0 and len(way.means) < FEWEST) or not np.isfinite(matrix).all():
                 return None
-            state = state + newton(matrix, base)
+            moved, changes, ways = np.linalg.svd(matrix - np.eye(len(base)))
+            moves = changes >= NEUTRAL
+            state = state - (base @ moved[:, moves] / changes[moves]) @ ways[moves]
             if np.linalg.norm(base) <= 100.0 * self.noise:
-                _, changes, ways = np.linalg.svd(matrix - np.eye(len(base)))
-                return Held(state, float(self.means(state[None])[0]), ways[changes < NEUTRAL])
+                return Held(state, float(self.means(state[None])[0]), ways[~moves])
         return None
 
-    def farthest(self, here: Held, side: float, size: float) -> Held:
+    def farthest(self, here: Held, side: float, starts: Floats) -> Held:
         """Return the state of a continuum with the largest mean (side 1) or the smallest (-1), from one of it.
 
         Lead it along the neutral ways up the slope of the mean, and back onto the continuum by true maps, until
-        no mean is larger. size: of the states.
+        no mean is larger. starts: states with the largest deflections, beyond which none is led.
         """
-        way, up = size, np.zeros_like(here.state)
+        low, high = starts.min(axis=0), starts.max(axis=0)
+        low, high = np.where(low < high, (low, high), ((-math.inf,), (math.inf,)))
+        way = size = float(np.linalg.norm(starts, axis=1).max())
+        up = np.zeros_like(here.state)
         while way > LAST_WAY * size:
             if len(here.neutral):  # next to an end of the continuum quotients see no neighbours that are held
                 slopes = self.means(here.state + SHIFT * size * here.neutral) - here.mean
                 up = side * slopes @ here.neutral / np.linalg.norm(slopes)
-            there = self.held(here.state + way * up)
+            there = self.held(np.clip(here.state + way * up, low, high))
             rises = there is not None and side * (there.mean - here.mean) > RISES
             here, way = (there, way) if there is not None and rises else (here, 0.4 * way)
         return here
@@ -431,8 +436,7 @@ class DrivePeriods:
         middle = self.held(np.mean([end.state for end in ends], axis=0)) if ends else None
         if middle is None or not len(middle.neutral):
             return []
-        size = max(map(self.size, starts))
-        return [*ends, *(self.farthest(middle, side, size) for side in (-1.0, 1.0))]
+        return [*ends, *(self.farthest(middle, side, np.array(starts)) for side in (-1.0, 1.0))]
 
 
 class FollowedStarts:

@@ -118,7 +118,7 @@ class Leaper:
                 self.periods += length
                 self._size = max(self._size, self.section.size(self.state))
                 self._length = int(min(LONGEST, length * min(8.0, 0.9 * max(ratio, 1e-6) ** (-1 / 3))))
-                return newton(matrix, base)
+                return _newton(matrix, base)
             length = int(length * max(0.1, 0.8 * ratio ** (-1 / 3))) if math.isfinite(ratio) else length // 10
         return None
 
@@ -180,7 +180,7 @@ def power_sum(matrix: Floats, length: int) -> tuple[Floats, Floats]:
     return power, total
 
 
-def newton(matrix: Floats, base: Floats) -> Floats:
+def _newton(matrix: Floats, base: Floats) -> Floats:
     """Return the step to the fixed point of the affine map; the shortest such step if multipliers are one."""
     return np.asarray(np.linalg.lstsq(np.eye(len(base)) - matrix, base, rcond=1e-7)[0])
 

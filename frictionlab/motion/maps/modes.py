@@ -199,10 +199,11 @@ begin = by_scalars(_begin_deflections, _begin_smoothly)
 
 @inner
 def restore(flow: Flow, work: Work) -> None:
-    """Put the yielding deflections of ``work.start``, moved by errors of a step, back on their surfaces."""
+    """Put the deflections of ``work.start`` that yield, or are beyond their limits, back on their surfaces."""
     for k in range(count_of(flow.law)):
-        if work.mode[k] == YIELDS and work.radius[k] > 0.0:
-            work.start[MEMORY + k] = on_circle(work.radius[k], work.start[MEMORY + k])
+        radius, z = work.radius[k], work.start[MEMORY + k]
+        if radius > 0.0 and (work.mode[k] == YIELDS or length(z) > radius):
+            work.start[MEMORY + k] = on_circle(radius, z)
 
 
 @inner
@@ -247,14 +248,13 @@ def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
     """Change every mode whose guard has been passed at ``work.memory``, and return the side of slip."""
     n = count_of(flow.law)
     reverses = guard_of(flow, n, w, a, work).value <= 0.0
+    # slip that reverses on the line unloads every deflection at once, that meets its limit just now, too
+    unloads = reverses and _unloads_by_reversal(work)
     for k in range(n):
-        # slip that reverses on the line unloads every deflection that yields at once
-        guard = guard_of(flow, k, w, a, work)
-        passed = guard.value <= 0.0
-        if work.mode[k] == YIELDS and (passed or (reverses and _unloads_by_reversal(work))):
+        passed = guard_of(flow, k, w, a, work).value <= 0.0
+        if work.mode[k] == YIELDS and (passed or unloads):
             work.mode[k] = FOLLOWS
-        # a deflection that meets its limit just as slip reverses is unloaded, too, and does not yield
-        elif work.mode[k] == FOLLOWS and passed and guard.rate < 0.0:
+        elif work.mode[k] == FOLLOWS and passed and not unloads:
             work.mode[k] = YIELDS
     return -flow.side if reverses else flow.side
 

@@ -77,10 +77,8 @@ class MemoryPoint:
         deflects = self.law.memory_kind != "scalars"
         if not forgets or (self.belt_speed == 0.0 and deflects):
             # On a belt at rest a slider that never yields keeps the deflection it began with.
-            place = 0j, 0j
-            means = self._followed_from(corners(self.maps, self.law, guess[0].size, place, self._fastest()))
-            if forgets:
-                means.append(float(curve.closed.mean[0]))
+            starts = corners(self.maps, self.law, guess[0].size, (0j, 0j), self._fastest())
+            means = [*self._followed_from(starts), *(curve.closed.mean.tolist() if forgets else ())]
             if self.belt_speed == 0.0 and self.slip is None and self.law.obeys("oddness"):
                 # The mirror image of a state is a state half a period later.
                 means += [-mean for mean in means]

@@ -384,10 +384,6 @@ class DrivePeriods:
         matrix: Floats = curve.matrices[0]
         return matrix
 
-    def means(self, states: Floats) -> Floats:
-        """Return the mean friction in the period from each of states [count, size]."""
-        return self.problem.repeated_once(self.scene, states)[1]
-
     def held(self, state: Floats) -> Held | None:
         """Return where the motion from a state ends, by true maps and then by Newton's; None if there is none.
 
@@ -403,26 +399,28 @@ class DrivePeriods:
             moves = changes >= NEUTRAL
             state = state - (base @ moved[:, moves] / changes[moves]) @ ways[moves]
             if np.linalg.norm(base) <= 100.0 * self.noise:
-                return Held(state, float(self.means(state[None])[0]), ways[~moves])
+                return Held(
+                    state, float(self.problem.repeated_once(self.scene, state[None])[1][0]), ways[~moves]
+                )
         return None
 
-    def farthest(self, here: Held, side: float, starts: Floats) -> Held:
+    def farthest(self, here: Held, side: float, size: float) -> Held:
         """Return the state of a continuum with the largest mean (side 1) or the smallest (-1), from one of it.
 
         Lead it along the neutral ways up the slope of the mean, and back onto the continuum by true maps, until
-        no mean is larger. starts: states with the largest deflections, beyond which none is led.
+        no mean is larger. size: of the states.
         """
-        low, high = starts.min(axis=0), starts.max(axis=0)
-        low, high = np.where(low < high, (low, high), ((-math.inf,), (math.inf,)))
-        way = size = float(np.linalg.norm(starts, axis=1).max())
-        up = np.zeros_like(here.state)
+        way, up = size, np.zeros_like(here.state)
         while way > LAST_WAY * size:
             if len(here.neutral):  # next to an end of the continuum quotients see no neighbours that are held
-                slopes = self.means(here.state + SHIFT * size * here.neutral) - here.mean
+                beside = here.state + SHIFT * size * here.neutral
+                slopes = self.problem.repeated_once(self.scene, beside)[1] - here.mean
                 up = side * slopes @ here.neutral / np.linalg.norm(slopes)
-            there = self.held(np.clip(here.state + way * up, low, high))
-            rises = there is not None and side * (there.mean - here.mean) > RISES
-            here, way = (there, way) if there is not None and rises else (here, 0.4 * way)
+            there = self.held(here.state + way * up)
+            if there is not None and side * (there.mean - here.mean) > RISES:
+                here = there
+            else:
+                way *= 0.4
         return here
 
     def continuum(self) -> list[Held]:
@@ -436,7 +434,8 @@ class DrivePeriods:
         middle = self.held(np.mean([end.state for end in ends], axis=0)) if ends else None
         if middle is None or not len(middle.neutral):
             return []
-        return [*ends, *(self.farthest(middle, side, np.array(starts)) for side in (-1.0, 1.0))]
+        size = max(map(self.size, starts))
+        return [*ends, *(self.farthest(middle, side, size) for side in (-1.0, 1.0))]
 
 
 class FollowedStarts:

@@ -92,7 +92,7 @@ def read_columns(
     apart, alike = np.zeros(found.shape), np.ones(found.shape, np.bool_)
     for i in np.flatnonzero(np.isnan(found[:, 0])).tolist():
         if each := ends(i):
-            rows = [_read_one(scenes[i], end.orbit) for end in each]
+            rows = np.array([_read_one(scenes[i], end.orbit) for end in each])
             found[i], apart[i] = rows[-1], np.ptp(rows, axis=0)
             alike[i] = apart[i] <= ALIKE * _sizes(scenes[i], found[i])
             if means is not None:
@@ -100,8 +100,7 @@ def read_columns(
     found[:, _not_there(scenes[0])] = np.nan
     columns = {name: np.where(alike[:, place], found[:, place], np.nan) for place, name in enumerate(READ)}
     if means is not None:
-        told = dict(zip(READ, found.T, strict=True))
-        errors = energy_errors(scenes, _mass(scenes[0]), means, told)
+        errors = energy_errors(scenes, _mass(scenes[0]), means, dict(zip(READ, found.T, strict=True)))
         for error, values in errors.items():
             name = error.removesuffix("_error")
             values += apart[:, READ.index(name)]

@@ -63,10 +63,9 @@ class MemoryPoint:
 
     def _fastest(self) -> float:
         """Return a bound on the speed of the slip."""
-        belt = abs(self.belt_speed)
-        if self.slip is not None:
-            return belt + self.slip.along.size() + self.slip.across.size()
-        return belt + abs(self.motion.velocity) + abs(self.motion.transverse_velocity)
+        parts = self.motion.velocity, self.motion.transverse_velocity
+        sizes = map(abs, parts) if self.slip is None else (self.slip.along.size(), self.slip.across.size())
+        return abs(self.belt_speed) + sum(sizes)
 
     def _answer(self, tolerance: float) -> PrescribedMean:
         guess = np.zeros((1, interpreted(size_of)(self.law, self.zero)))
@@ -74,8 +73,7 @@ class MemoryPoint:
         curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
         forgets = curve.closed.found[0] and curve.reached[0] and multiplier <= FORGETS
-        deflects = self.law.memory_kind != "scalars"
-        if not forgets or (self.belt_speed == 0.0 and deflects):
+        if not forgets or (self.belt_speed == 0.0 and self.law.memory_kind == "deflections"):
             # On a belt at rest a slider that never yields keeps the deflection it began with.
             starts = corners(self.maps, self.law, guess[0].size, (0j, 0j), self._fastest())
             means = [*self._followed_from(starts), *(curve.closed.mean.tolist() if forgets else ())]
@@ -83,7 +81,7 @@ class MemoryPoint:
                 # The mirror image of a state is a state half a period later.
                 means += [-mean for mean in means]
             if not forgets or max(means) - min(means) > max(float(curve.closed.error[0]), SAME_MEAN):
-                return self._left_open(means, HOLDS if deflects else WANDERS)
+                return self._left_open(means, WANDERS if self.law.memory_kind == "scalars" else HOLDS)
         self.curve = curve
         constants = curve.reached[0] * -math.log(max(multiplier, 1e-300))
         self.tested = (
@@ -126,8 +124,8 @@ class MemoryPoint:
 
     def ends(self) -> list[End]:
         """Return where starts ended, that from rest last, if the mean depends on the start."""
-        reached = self.reached if self.status == "not_unique" else []
-        return [End(self._recorded(state[None]), self.goal.tolerance) for state in reached]
+        reached = (state[None] for state in self.reached if self.status == "not_unique")
+        return [End(self._recorded(state), self.goal.tolerance) for state in reached]
 
     def _recorded(self, states: Floats) -> Orbit:
         found = self._called(states, RECORDED)

@@ -52,10 +52,8 @@ DECAYS, CLIMBS = 30.0, 2.0
 The distance is at most this multiple of the deflection of the spring under the friction force."""
 
 
-NEUTRAL = 1e-5
-"""Largest change by a map, over a small deviation, of one that the map leaves as it is."""
-MOST_STEPS = 12
-"""Number of Newton's steps to a state that a map leaves as it is."""
+NEUTRAL, MOST_STEPS = 1e-5, 12
+"""Largest change by a map, over a small deviation, of one that the map leaves as it is; Newton's steps to it."""
 SHIFT, LAST_WAY, RISES = 1e-4, 1e-6, 1e-8
 """Deviation by which a slope is measured, last way led up it, and smallest rise of the mean that counts.
 
@@ -399,9 +397,8 @@ class DrivePeriods:
             moves = changes >= NEUTRAL
             state = state - (base @ moved[:, moves] / changes[moves]) @ ways[moves]
             if np.linalg.norm(base) <= 100.0 * self.noise:
-                return Held(
-                    state, float(self.problem.repeated_once(self.scene, state[None])[1][0]), ways[~moves]
-                )
+                mean = float(self.problem.repeated_once(self.scene, state[None])[1][0])
+                return Held(state, mean, ways[~moves])
         return None
 
     def farthest(self, here: Held, side: float, size: float) -> Held:
@@ -415,12 +412,10 @@ class DrivePeriods:
             if len(here.neutral):  # next to an end of the continuum quotients see no neighbours that are held
                 beside = here.state + SHIFT * size * here.neutral
                 slopes = self.problem.repeated_once(self.scene, beside)[1] - here.mean
-                up = side * slopes @ here.neutral / np.linalg.norm(slopes)
+                up = side * slopes @ here.neutral / (np.linalg.norm(slopes) + 1e-300)
             there = self.held(here.state + way * up)
-            if there is not None and side * (there.mean - here.mean) > RISES:
-                here = there
-            else:
-                way *= 0.4
+            rises = there is not None and side * (there.mean - here.mean) > RISES
+            here, way = (there, way) if there is not None and rises else (here, 0.4 * way)
         return here
 
     def continuum(self) -> list[Held]:

@@ -27,6 +27,7 @@ from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Cu
 from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
+from frictionlab.methods.prescribed.memory import HOLDS
 from frictionlab.methods.shooting.attractors import (
     MOST,
     Attractor,
@@ -72,9 +73,6 @@ SURELY = 1e-6
 CENTRAL = 1e-6
 """Error of multipliers by central quotients of a law without memory, absolute or of those above one."""
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
-HELD = (
-    "on a belt at rest a deflection that never yields keeps what it began with: the mean depends on the start"
-)
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
 MISFIT = (
     "error {:.1e} above the tolerance {:.1e}: what remembers is a sum of springs, and this is what they miss"
@@ -234,7 +232,7 @@ class SteadyStates:
         if self._may_hold(i) and (continuum := DrivePeriods(self.problem, self.scenes[i]).continuum()):
             means = [each.mean for each in continuum]
             self._clear(i)
-            self._leave_open(i, HELD, min(means), max(means))
+            self._leave_open(i, f"{HOLDS}: the mean depends on the start", min(means), max(means))
             self.continua[i] = [each.state for each in continuum]
         elif self.problem.goal.check_attraction and self._attracts(i):
             at = quick_starts(self.problem, float(self.belt_speeds[i]))
@@ -389,9 +387,8 @@ class SteadyStates:
     def _may_hold(self, i: int) -> bool:
         """Whether the belt is at rest and a deflection may only follow the mass: it then keeps what it began with."""
         law = self.problem.law
-        return self.belt_speeds[i] == 0.0 and (
-            law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
-        )
+        follows = law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
+        return follows and bool(self.belt_speeds[i] == 0.0)
 
     def _ends(self, i: int) -> list[End]:
         """Of a continuum."""

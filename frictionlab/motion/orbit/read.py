@@ -73,21 +73,14 @@ def read_columns(
     Columns that do not apply are NaN.
 
     ends: returns orbits of a scene whose mean may be any in a range; the columns in which they agree are
-    told, their difference as a part of the error. means: mean friction of
-    each scene, for the errors of energies; these are left out without it. orbit:
-    returns the orbit of one scene, None if it has none. orbits: returns all of them at once, where that is
-    cheaper.
+    told, their difference as a part of the error. means: mean friction of each scene, for the errors of
+    energies; these are left out without it. orbit: returns the orbit of one scene, None if it has none.
+    orbits: returns all of them at once, where that is cheaper.
     """
     if orbits is not None:
         found = _read_together(scenes, orbits())
     else:
         found = np.array([_read_one(scene, orbit(i)) for i, scene in enumerate(scenes)])
-    if scenes[0].remembers:
-        # Forces of a body that remembers are not recorded: its dissipation is the rest of the balance.
-        put_in, viscous, friction = (
-            READ.index(f"energy_{name}") for name in ("input", "viscous", "friction")
-        )
-        found[:, viscous] = found[:, put_in] - found[:, friction]
     means = means and means._replace(value=means.value.copy(), error=means.error.copy())
     apart, alike = np.zeros(found.shape), np.ones(found.shape, np.bool_)
     for i in np.flatnonzero(np.isnan(found[:, 0])).tolist():
@@ -97,14 +90,19 @@ def read_columns(
             alike[i] = apart[i] <= ALIKE * _sizes(scenes[i], found[i])
             if means is not None:
                 means.value[i], means.error[i] = found[i, 0], max(end.error for end in each)
+    if scenes[0].remembers:
+        # Forces of a body that remembers are not recorded: its dissipation is the rest of the balance.
+        put_in, viscous, friction = (
+            READ.index(f"energy_{name}") for name in ("input", "viscous", "friction")
+        )
+        found[:, viscous] = found[:, put_in] - found[:, friction]
     found[:, _not_there(scenes[0])] = np.nan
     columns = {name: np.where(alike[:, place], found[:, place], np.nan) for place, name in enumerate(READ)}
     if means is not None:
         errors = energy_errors(scenes, _mass(scenes[0]), means, dict(zip(READ, found.T, strict=True)))
         for error, values in errors.items():
             name = error.removesuffix("_error")
-            values += apart[:, READ.index(name)]
-            values[np.isnan(columns[name])] = np.nan
+            values += np.where(np.isnan(columns[name]), np.nan, apart[:, READ.index(name)])
         columns |= errors
     return {name: columns[name] for name in FROM_ORBITS if name in columns}
 

@@ -327,9 +327,9 @@ def _corrected(setting: Setting, search: Iterate, last: PacedMap, floor: float, 
         left += gradient[i] * search.step[i]
     # Two maps of one accuracy agree however wrong they are.
     share = setting.maps.orders.share if finer < 0.5 * accuracy else 1.0
-    # once, not twice: this map comes after two that agreed
-    changed = 0.5 * (mean_change(scales, image, better) + share * before)
-    steps = floor / scales.normal_load + hidden_error_of_mean(setting, finer)
+    # either of the two may be the one whose steps miss a corner of friction, after two that agreed
+    changed = mean_change(scales, image, better) + 0.5 * share * before
+    steps = (floor + 0.1 * finer) / scales.normal_load + hidden_error_of_mean(setting, finer)
     return better, stated_error(changed, abs(left), steps), took + 1
 
 

@@ -177,6 +177,43 @@ def test_an_error_is_judged_with_the_derivative_at_the_orbit_and_not_one_of_stat
         assert state.error <= tolerance
 
 
+@pytest.mark.parametrize(
+    ("damping", "load", "speed", "amplitude", "frequency", "mu", "length"),
+    [
+        (
+            0.18151428097248495,
+            1.7353739724183828,
+            0.342558546208412,
+            18.210235200084423,
+            1.3971204210263073,
+            0.9320728078994559,
+            0.05732553871494956,
+        ),
+        (
+            0.31795923268800197,
+            0.12209010559355726,
+            0.14652891933343845,
+            14.599267991291049,
+            2.266956542623818,
+            0.9508917191521107,
+            1.2409786907162685,
+        ),
+    ],
+)
+def test_loose_tolerances_state_errors_that_cover_corners_of_friction_that_steps_miss(
+    damping: float, load: float, speed: float, amplitude: float, frequency: float, mu: float, length: float
+) -> None:
+    """Found at random, one in a thousand: two maps agreed to less than either was off."""
+    drive = fl.Drive(amplitude=amplitude, frequency=frequency)
+    scene = fl.Scene(damping_ratio=damping, normal_load=load, belt_speed=speed, drive=drive)
+    law = fl.ElastoPlastic(mu_kinetic=mu, presliding_length=length)
+    fine = fl.steady_state(scene, law, method="shooting", tolerance=1e-10)
+
+    for tolerance in (1e-3, 1e-4, 1e-5):
+        state = fl.steady_state(scene, law, method="shooting", tolerance=tolerance)
+        assert abs(state.mean_friction - fine.mean_friction) <= state.error + fine.error
+
+
 def test_friction_that_begins_within_rounding_of_its_limit_reaches_it_once() -> None:
     drive = fl.Drive(amplitude=10.332913485240994, frequency=0.4716048960417302, phase=3.04427042833868)
     scene = fl.Scene(

@@ -56,7 +56,7 @@ INSIDE_METHODS = {
         "prescribed": "base periodic under_way words",
         "shooting": "base periodic prescribed under_way words",
         "exact": "base prescribed shooting words",
-        "march": "base periodic prescribed shooting under_way",
+        "march": "base periodic shooting under_way",
         "reduced": "base exact prescribed shooting words",
         "auto": "base exact relay_locus shooting words",
     }.items()

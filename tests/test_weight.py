@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1449,
     "curves": 946,
     "laws": 690,
-    "methods": 11641,
+    "methods": 11574,
     "motion": 4895,
     "report": 1772,
     "runner": 4341,
@@ -23,11 +23,11 @@ LIMITS = {
     "testing": 1497,
     "theory": 924,
     "values": 1375,
-    "tests": 29745,
+    "tests": 29575,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 357
+MOST_FILES = 354
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

@@ -261,7 +261,7 @@ def crossing(march: MarchRun, run: MarchResult) -> float:
         turns = run.crossings * _unresolved(march, run) + run.flips * run.stride * _unresolved_jump(
             march, run
         )
-        return slip * (turns / per_period + march.unseen_share(run.pace.steps))
+        return slip * turns / per_period
     release = march.at_rest - slip if run.stuck > 0.0 else 0.0
     return (slip * run.crossings + release * run.stride) / per_period
 
@@ -321,7 +321,7 @@ def _unseen(march: MarchRun, runs: Sequence[MarchResult]) -> float:
 def _slowness(march: MarchRun) -> int:
     """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
     mass = march.mass
-    quickest = 0.0 if march.unmoved else max(1.0, mass.damping)
+    quickest = max(1.0, mass.damping)
     if mass.varying:
         quickest = max(quickest, mass.varying.quickest)
     if not march.straight:

@@ -24,12 +24,10 @@ from frictionlab.methods.march.error import (
     steps_needed,
     why_not,
 )
-from frictionlab.methods.march.laps import CLOSED, RESTING, STALLED, TOO_FAST, TOO_STIFF, MarchState
-from frictionlab.methods.march.prescribed import as_prescribed
+from frictionlab.methods.march.laps import CLOSED, RESTING, STALLED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.refusal import unstable
 from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.steppers import friction_falls
-from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.methods.shooting.attractors import describe, starts
 from frictionlab.methods.shooting.long_mean import (
     DRIVEN,
@@ -87,7 +85,8 @@ class OtherStarts:
         known = [self.first]
         enough = min(self.like.pace.enough, SHUT * march.unit)
         pace = replace(self.like.pace, rate=0.0, enough=enough, work=max(self.like.pace.work, WORK))
-        for place in self._places():
+        for start in starts(march.scene, march.law)[1:]:
+            place = march.place(start)
             run = march.run(pace, place)
             if run.verdict == TOO_FAST:  # flung: it needs more steps than where it ends
                 steps = math.ceil(steps_needed(march, run))
@@ -98,14 +97,6 @@ class OtherStarts:
             same = (old for old in known if self._agree(old, found, run))
             known.append(next(same, found))
         return known, ""
-
-    def _places(self) -> list[MarchState]:
-        """The other starts; of a slip that is prescribed, deflections to either side."""
-        march = self.march
-        if march.unmoved:
-            depth = march.law.presliding()
-            return [MarchState(0j, 0j, np.array([side * depth])) for side in (1.0, -1.0)]
-        return [march.place(start) for start in starts(march.scene, march.law)[1:]]
 
     def _led(self, run: MarchResult) -> Arrival:
         mean, like, spread = run.mean.real, self.like, run.high - run.low
@@ -208,26 +199,11 @@ class MarchedPoint:
         self.status: Status = "failed"
         self.reason, self.model, self.error_kind = "", "", "estimated"
         self.orbit: Callable[[], Orbit | None] = nowhere
-        if self.march.unmoved and (known := self._left_open_by_rest()) is not None:
-            self._range(known.found.low, known.found.high)
-            self.reason = known.reason
-        elif (
-            not self.march.unmoved
-            and stays_at_rest(scene, law)
-            and scene.initial is None
-            and not scene.undriven
-        ):
+        if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
             self._leave_open(-resting_range(scene, law, -1.0), resting_range(scene, law))
         else:
             self._judge(march_mean(self.march, plan, tolerance), tolerance)
         self.seconds = self.march.seconds
-
-    def _left_open_by_rest(self) -> VaryingPoint | None:
-        """A prescribed slip that rests for a while: no step tells friction there, unless it is remembered."""
-        if self.law.memory_kind != "none":
-            return None
-        known = VaryingPoint(self.scene, self.law)
-        return None if known.status == "ok" else known
 
     def _leave_open(self, low: float, high: float) -> None:
         self._range(low, high)
@@ -294,8 +270,6 @@ class MarchedPoint:
     def _may_depend_on_start(self) -> bool:
         """Whether another start may lead elsewhere, in a row that is not about one start alone."""
         scene, law = self.scene, self.law
-        if self.march.unmoved:
-            return law.count() > 0
         if scene.undriven or stays_at_rest(scene, law):
             return False
         if law.memory_kind == "none":
@@ -323,7 +297,7 @@ class MarchedPoint:
 
     def _lost_in_chatter(self, mean: MarchMean) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
-        if self.march.unmoved or not self.march.facts.is_blind(self.law.memory_kind):
+        if not self.march.facts.is_blind(self.law.memory_kind):
             return 0.0
         step = 2.0 * math.pi / self.scene.frequency / mean.runs[-1].pace.steps
         jump = self.march.mass.normal_load * self.march.at_rest * step
@@ -372,7 +346,7 @@ class MarchedPoint:
     def _moves_on(self) -> bool:
         """Whether bristles that a moving belt drags along forget where the mass started."""
         moves = self.scene.belt_speed != 0.0 and not self.scene.undriven
-        return self.march.unmoved or (self.law.count() > 0 and moves)
+        return self.law.count() > 0 and moves
 
     def _period(self, mean: MarchMean, last: MarchResult, own: int) -> float:
         if not self.scene.undriven:
@@ -393,10 +367,7 @@ class MarchedPoint:
         laps = laps if run.verdict == STALLED else run.stride
         periods = max(1, laps // own)
         orbit = replace(self.march.track(run, periods * own), periods=periods)
-        if self.march.unmoved:
-            orbit = as_prescribed(self.scene, orbit)
-        known = self.march.facts.sticks or (self.march.unmoved and self.law.count() == 0)
-        return orbit if known else replace(orbit, stick=None)
+        return orbit if self.march.facts.sticks else replace(orbit, stick=None)
 
 
 def nowhere() -> None:

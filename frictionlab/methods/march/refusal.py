@@ -47,6 +47,9 @@ class Request:
 def reasons_against(asked: Request) -> Iterator[str]:
     """Every reason why march cannot do what is asked, the first to be mended first."""
     law, scene = asked.law, asked.scene
+    if scene.degrees_of_freedom == 0:
+        yield suggest_shooting("march steps a mass, and this slip is prescribed", scene, law)
+        return
     if reason := beyond_linear("march", scene, (*BENDING, *REMEMBERING)) or about_rest("march", scene):
         yield reason
         return
@@ -101,8 +104,6 @@ def _against_several_memories(asked: Request) -> Iterator[str]:
         return
     if asked.law.remembers_stick():
         yield "march steps follow no stick or slip of single elements; shooting does"
-    if asked.scene.degrees_of_freedom == 0:
-        yield "for a law with several memories or scalars march needs a driven mass; use shooting"
     if asked.scene.undriven:
         reason = "for a law with several memories or scalars march needs a driven mass"
         yield suggest_shooting(reason, asked.scene, asked.law)
@@ -133,8 +134,6 @@ def _against_rates(asked: Request) -> Iterator[str]:
     if asked.facts.limited_by_rates and math.isinf(law.largest_rate(1.0)):
         what, use = ("the memory", "shooting") if asked.kind in SEVERAL else ("bristles", "exponential")
         yield f"stepper {asked.stepper} needs a bound on the decay rate of {what}, and this law has none; use {use}"
-    if asked.stepper == "sdirk2" and asked.scene.degrees_of_freedom == 0:
-        yield "stepper sdirk2 is not needed under a prescribed slip; use exponential, for any stiffness"
     if not asked.facts.bears_jumps and math.isfinite(law.yield_deflection()):
         yield f"stepper {asked.stepper} needs continuous rates, and those of this law jump at yield; use exponential"
 

@@ -21,12 +21,10 @@ from frictionlab.methods.march.laps import (
     MarchState,
     march_laps,
 )
-from frictionlab.methods.march.prescribed import unmoved_mass, unseen_share
 from frictionlab.methods.march.steppers import (
     STEPPERS,
     Resolution,
     StepperName,
-    elastic_stiffness,
     fastest_slip,
     fewest_steps,
     first_memory,
@@ -45,8 +43,6 @@ from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
-UNMOVED = 2.0**100
-"""Of friction in the norm of energy, where it moves no mass: rounding of a mass at rest is nothing beside it."""
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
 
@@ -94,8 +90,7 @@ class MarchRun:
 
     def __init__(self, scene: Scene, law: FrictionLaw, stepper: StepperName) -> None:
         self.scene, self.law, self.stepper, self.facts = scene, law, stepper, STEPPERS[stepper]
-        self.unmoved = scene.degrees_of_freedom == 0
-        self.mass: Mass = unmoved_mass(scene) if self.unmoved else mass_of(scene)
+        self.mass: Mass = mass_of(scene)
         self.through_rest = steps_through_rest(scene, law, self.facts)
         start = scene.initial
         starts_across = start is not None and (start.x2 != 0.0 or start.velocity2 != 0.0)
@@ -107,12 +102,12 @@ class MarchRun:
         self.lightest, self.heaviest = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
-        relaxing = [] if self.unmoved or not self.mass.relaxing else self.mass.relaxing.stiffness
+        relaxing = self.mass.relaxing.stiffness if self.mass.relaxing else []
         self._fresh = np.concatenate([first_memory(scene, law), np.zeros(len(relaxing))])
-        self._spring = np.concatenate([self._memory_stiffness(), [1.0 / each for each in relaxing]])
+        self._spring = np.concatenate([memory_stiffness(scene, law), [1.0 / each for each in relaxing]])
         self.start = self.place(scene.start if scene.undriven else scene.initial)
         # on a belt at rest the mass stays wherever a run left it
-        self.forgets = scene.belt_speed != 0.0 or self.unmoved
+        self.forgets = scene.belt_speed != 0.0
         self.drive_period = 2.0 * math.pi / self.mass.frequency
         self.lap: float = interpreted(span)(self.body)
         self.window = self._relaxing()
@@ -121,7 +116,7 @@ class MarchRun:
     @property
     def unit(self) -> float:
         """The distance of two states, in the norm of energy, that makes friction differ by its coefficient."""
-        return UNMOVED if self.unmoved else self.mass.normal_load
+        return self.mass.normal_load
 
     @property
     def at_rest(self) -> float:
@@ -158,16 +153,6 @@ class MarchRun:
         if start is None:
             return MarchState(*self._free, self._fresh)
         return MarchState(complex(start.x, start.x2), complex(start.velocity, start.velocity2), self._fresh)
-
-    def _memory_stiffness(self) -> Floats:
-        """Of each memory, in the norm of energy; where nothing moves the distance is that of friction alone."""
-        if self.unmoved:
-            return np.array([(UNMOVED * elastic_stiffness(self.law)) ** 2])
-        return memory_stiffness(self.scene, self.law)
-
-    def unseen_share(self, steps: int) -> float:
-        """What steps do not see of bristles under a slip that turns: friction by this share, where it is known."""
-        return unseen_share(self.scene, self.law, steps) if self.unmoved else 0.0
 
     def fewest(self) -> int:
         """Steps per period that the stepper needs not to explode; 1 where any number will do."""
@@ -216,7 +201,7 @@ class MarchRun:
     @property
     def _slowest(self) -> float:
         """The longest time in which a force of what of the body remembers relaxes."""
-        relaxing: Any = () if self.unmoved else self.mass.relaxing
+        relaxing: Any = self.mass.relaxing
         return 1.0 / min(relaxing.rate) if relaxing else 0.0
 
     def _relaxing(self) -> int:
@@ -265,8 +250,6 @@ class MarchRun:
 
     def _near(self, pace: Resolution) -> float:
         """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
-        if self.unmoved:
-            return 0.0
         if self.facts.adaptive:
             return 3.0 * pace.width
         force = self.heaviest * self.mass.normal_load * self.law.sliding_friction(0.0)
@@ -335,7 +318,7 @@ class MarchRun:
         if march.progress.verdict == STALLED:
             led = self._apart(march, len(march.laps.impulse), len(march.laps.impulse) - self.window)
             return spread + 2.0 * led / self.unit
-        lasting = 0.0 if self.unmoved or not self.mass.relaxing else self.mass.relaxing.lasting
+        lasting = self.mass.relaxing.lasting if self.mass.relaxing else 0.0
         ends = (1.0 + self.mass.damping + lasting * (1.0 + self._slowest)) * drift
         doubt = (
             2.0 if self.law.memory_kind == "none" else 4.0

@@ -143,11 +143,6 @@ def lightest_contact(scene: Scene) -> float:
 def expected_slip(scene: Scene) -> float:
     """The largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
     along = velocity_scale(scene) + abs(scene.belt_speed)
-    if scene.degrees_of_freedom == 0:
-        motion = scene.motion()
-        if motion.varying:
-            return abs(scene.belt_speed) + float(motion.varying.belt_swing)
-        return math.hypot(along, abs(motion.transverse_velocity))
     mass, start = scene.mass(), scene.start if scene.undriven else scene.initial
     dynamic = complex(mass.transverse_stiffness - mass.frequency**2, mass.transverse_damping * mass.frequency)
     across = abs(mass.transverse_force) * mass.frequency
@@ -264,7 +259,7 @@ def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
     if law.memory_kind == "none" or math.isinf(facts.held):
         return 1
     lap = 2.0 * math.pi / scene.frequency
-    held = 0.0 if scene.degrees_of_freedom == 0 else quickest_when_held(scene, law)
+    held = quickest_when_held(scene, law)
     if not facts.limited_by_rates:
         return math.ceil(MARGIN * lap * held / facts.held)
     rate = law.largest_rate(expected_slip(scene)) / lightest_contact(scene)

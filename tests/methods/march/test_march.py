@@ -25,7 +25,7 @@ from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.motion.orbit.read import read_columns
-from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Transverse
 from frictionlab.values.notes import WrongValues
 
 LAW = Coulomb(mu=0.4)
@@ -268,38 +268,6 @@ def test_an_undriven_mass_that_comes_to_slide_steadily_has_no_period(damping):
     answers = solve(Scene(damping_ratio=damping, normal_load=1.0, belt_speed=-0.5))
     assert answers.columns["mean_friction"][0] == pytest.approx(-0.4, abs=1e-9)
     assert np.isnan(answers.columns["period"][0])
-
-
-# --- prescribed slip ------------------------------------------------------------------------------------------------
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("width", [0.3, 0.01])
-def test_prescribed_slip_with_smoothed_friction_tells_its_bias(width):
-    one = Scene(belt_speed=2.99, slip=Slip(velocity_amplitude=3.0, frequency=2.0))
-    answers = solve(one, tolerance=1e-5, stepper="smoothed", smoothing="arctan", width=width)
-    assert covered(answers, 0.4 * 2.0 / math.pi * math.asin(2.99 / 3.0))
-
-
-@deep("more kernels to compile")
-def test_prescribed_slip_in_the_plane_agrees_with_quadrature():
-    one = Scene(
-        belt_speed=0.7,
-        slip=Slip(velocity_amplitude=1.0, frequency=1.0),
-        transverse_slip=TransverseSlip(velocity_amplitude=0.8, phase=50.0),
-    )
-    answers, expected = solve(one, tolerance=1e-8), with_columns(Exact(), [one], LAW, 1e-12)
-    assert covered(answers, expected.columns["mean_friction"])
-    assert answers.columns["error"][0] <= 1e-8
-    assert answers.orbit(0) is not None
-
-
-@pytest.mark.parametrize(("speed", "ratio", "expected"), [(0.5, 1.5, 1.040), (2.0, 1.5, 1.002)])
-def test_a_stribeck_curve_without_reversal_gives_the_published_ratio(speed, ratio, expected):
-    law = Stribeck(mu_static=0.4, mu_kinetic=0.25, stribeck_speed=speed)
-    one = Scene(belt_speed=ratio, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
-    found = solve(one, law, 1e-6).columns["mean_friction"][0] / law.sliding_friction(ratio)
-    assert found == pytest.approx(expected, abs=1e-3)
 
 
 # --- where there is no one number -----------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ from frictionlab.methods.march.method import March
 from frictionlab.motion.contact import advance_bristle, project_to_yield
 from frictionlab.motion.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
-from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 STEPPERS = {"rk4": Rk4(), "exponential": Exponential(), "sdirk2": Sdirk2()}
@@ -101,26 +101,6 @@ def test_given_steps_tell_their_error():
         assert f"{stepper}: {steps} steps per period" in answers.model[0]
         assert off <= answers.columns["error"][0] + KNOWN
         assert answers.columns["error"][0] <= 0.05
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("stepper", ["exponential", "rk4"])
-def test_prescribed_slip_agrees_with_the_exact_two_leg_map(stepper):
-    with (REFERENCE / "rigid_kinematics.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if 1e-3 <= float(row["lam"]) <= 1.0][7::9]
-    for row in rows:
-        one = Scene(belt_speed=float(row["kappa"]), slip=Slip(velocity_amplitude=1.0, frequency=1.0))
-        answers = solve(one, Dahl(mu=0.4, presliding_length=float(row["lam"])), 1e-7, stepper=stepper)
-        off = abs(answers.columns["mean_friction"][0] - 0.4 * float(row["dahl_exact"]))
-        assert answers.status == ["ok"]
-        assert off <= answers.columns["error"][0] + 5e-9 <= 1.1e-7
-
-
-@deep("seconds of steps")
-def test_bristles_as_stiff_as_may_be_rub_like_coulomb_friction_under_a_prescribed_slip():
-    one = Scene(belt_speed=0.5, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
-    answers = solve(one, Dahl(mu=0.4, presliding_length=1e-9), 1e-6)
-    assert answers.columns["mean_friction"][0] == pytest.approx(0.4 / 3.0, abs=1e-6)
 
 
 # --- orders -------------------------------------------------------------------------------------------------------
@@ -317,62 +297,6 @@ def test_a_step_beyond_yield_is_brought_back_to_it(size, angle):
 # --- where there is no one number, or no answer -----------------------------------------------------------------
 
 
-@deep("more kernels to compile")
-def test_bristles_that_only_bend_keep_what_they_began_with():
-    one = Scene(belt_speed=0.0, slip=Slip(velocity_amplitude=0.1, frequency=1.0))
-    answers = solve(one, Dahl(mu=0.4, presliding_length=1.0, exponent=0.0))
-    assert answers.status == ["not_unique"]
-    assert answers.columns["mean_high"][0] - answers.columns["mean_low"][0] > 0.1
-    assert np.isnan(answers.columns["mean_friction"][0])
-
-
-ACROSS = TransverseSlip(velocity_amplitude=1.2310254529015219, phase=40)
-NEARLY_BACK = TransverseSlip(velocity_amplitude=0.4508060362819711, phase=167.61212592399406)
-BENT_BACK = TransverseSlip(velocity_amplitude=0.7020434447685906, phase=154.06421298900176)
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize(
-    ("law", "belt_speed", "frequency", "across", "tolerance", "mean"),
-    [
-        # three grids can agree by chance on reversals of an axis, on a lag finer than steps, on unloading
-        (
-            Jenkins(mu=0.4, presliding_length=0.011003229075035235, planar="per-axis"),
-            *(0.97, 0.7599995519720324, ACROSS, 1e-4, 0.36898091867),
-        ),
-        (
-            Jenkins(mu=0.4, presliding_length=0.0012444663977646652),
-            *(1.0684317736735658, 0.8552844715063177, NEARLY_BACK, 1e-4, 0.32894053117),
-        ),
-        (
-            ElastoPlastic(mu_kinetic=0.4, presliding_length=0.7315027763453661),
-            *(0.19375812042639326, 0.6308845703395107, BENT_BACK, 1e-5, 0.07371751281),
-        ),
-    ],
-    ids=["reversals of an axis", "lag", "unloading"],
-)
-def test_corners_inside_steps_of_a_prescribed_slip_in_the_plane_are_in_the_error(
-    law, belt_speed, frequency, across, tolerance, mean
-):
-    """Means: shooting, which steps from corner to corner; march comes to them with its steps."""
-    slip = Slip(velocity_amplitude=1.0, frequency=frequency)
-    found = solve(Scene(belt_speed=belt_speed, slip=slip, transverse_slip=across), law, tolerance).columns
-    assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= tolerance
-
-
-@deep("more kernels to compile")
-def test_bristles_that_bend_back_within_a_step_after_a_jump_of_the_slip_are_in_the_error():
-    """Halved steps agree as long as all of them are longer than that takes."""
-    law, square = (
-        Dahl(mu=0.4, stiffness=4000.0),
-        Slip(velocity_amplitude=1.0, frequency=3.0, waveform="square"),
-    )
-    found = solve(Scene(belt_speed=0.5, normal_load=2.0, slip=square), law, 1e-4).columns
-    # Dahl's friction comes to its limit as exp(-path/length): it lacks 2 mu length/speed of its impulse after a jump
-    mean = 2.0 * 0.4 * law.presliding() * (1.0 / 0.5 - 1.0 / 1.5) / (2.0 * math.pi / 3.0)
-    assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= 1e-4
-
-
 @deep("seconds of steps")
 def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_error_says():
     law = Dahl(mu=0.4, presliding_length=0.1, exponent=2.0)
@@ -438,12 +362,7 @@ def test_a_stepper_of_another_kind_of_law_is_refused_with_what_to_use(keys, law,
 def test_a_law_without_a_vector_form_is_refused_in_the_plane_alone():
     law = Dahl(mu=0.4, stiffness=1.0, exponent=2.0)
     across = Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=10.0))
-    planar = Scene(
-        belt_speed=1.0,
-        slip=Slip(velocity_amplitude=1.0, frequency=1.0),
-        transverse_slip=TransverseSlip(velocity_amplitude=1.0),
-    )
-    for one in (scene(5.0, transverse=across), planar):
-        assert law.no_vector_form() in March().refusal(one, law)
-        assert March().refusal(one, law.model_copy(update={"planar": "per-axis"})) is None
+    planar = scene(5.0, transverse=across)
+    assert law.no_vector_form() in March().refusal(planar, law)
+    assert March().refusal(planar, law.model_copy(update={"planar": "per-axis"})) is None
     assert March().refusal(scene(5.0), law) is None

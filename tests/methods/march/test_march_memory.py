@@ -120,7 +120,7 @@ def test_errors_of_given_steps_hold_what_finer_steps_change():
             Scene(belt_speed=1, normal_load=1, slip=Slip(velocity_amplitude=2, frequency=1)),
             {},
             ONE,
-            "shooting",
+            "march steps a mass, and this slip is prescribed; use shooting",
         ),
         (driven(1.0, drive=None, initial={"x": 1.0}), {}, ONE, "use shooting"),
         (driven(1.0), {"stepper": "moreau"}, ONE, "use rk4"),

@@ -25,7 +25,6 @@ from frictionlab.methods.march.lap import MarchSettings, steps_in
 from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
-from frictionlab.theory import mean_prescribed_longitudinal
 
 COULOMB, DAHL = Coulomb(mu=0.4), Dahl(mu=0.4, presliding_length=1.0)
 LINE = {"damping_ratio": 0.1, "normal_load": 10.0, "belt_speed": 2.0}
@@ -177,106 +176,12 @@ def test_a_mass_that_never_slips_on_a_vibrating_belt_has_a_range_of_means():
         assert found.columns[name] == pytest.approx(expected.columns[name], abs=1e-9)
 
 
-# --- prescribed slip ----------------------------------------------------------------------------------------------
-
-
-def slip(waveform, belt_speed, **more):
-    """A prescribed slip along the belt of velocity 3."""
-    return {
-        "belt_speed": belt_speed,
-        "slip": {"velocity_amplitude": 3.0, "frequency": 0.7, "waveform": waveform} | more,
-    }
-
-
-@pytest.mark.parametrize("belt_speed", [0.3, 2.0, 4.0])
-@pytest.mark.parametrize("waveform", ["sine", "square", "triangle"])
-def test_a_slip_along_the_belt_is_averaged_to_its_closed_form(waveform, belt_speed):
-    expected = 0.4 * float(mean_prescribed_longitudinal(belt_speed / 3.0, waveform))
-    mean, error = mean_and_error(solve(slip(waveform, belt_speed, phase=33.0), tolerance=1e-4))
-    assert abs(mean - expected) <= error <= 1e-4
-
-
-@pytest.mark.parametrize(
-    ("stepper", "width"), [("moreau", None), pytest.param("smoothed", 0.05, marks=compiling)]
-)
-def test_a_load_in_phase_with_the_slip_weighs_its_directions(stepper, width):
-    keys = slip("square", 1.0) | {"normal_load_variation": {"amplitude": 0.3, "waveform": "square"}}
-    own = {"width": width} if width else {}
-    mean, error = mean_and_error(solve(keys, tolerance=1e-6, stepper=stepper, **own))
-    assert (
-        abs(mean + 0.4 * 0.3) <= error + 1e-12
-    )  # ahead of the belt under 1.3 of the load, behind it under .7
-
-
-def test_a_slip_that_rests_for_a_while_has_a_range_of_means():
-    found = with_columns(March(), [Scene(**slip("square", 3.0))], COULOMB, 1e-4)
-    assert found.status == ["not_unique"]
-    assert found.columns["mean_high"][0] > found.columns["mean_low"][0]
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("stepper", ["exponential", "rk4"])
-@pytest.mark.parametrize("direction", [0.0, 40.0])
-def test_bristles_follow_any_slip(stepper, direction):
-    keys = slip("sawtooth", 1.0, direction=direction, phase=20.0)
-    keys |= {"normal_load_variation": {"amplitude": 0.5, "waveform": "triangle", "frequency_ratio": 0.5}}
-    found = solve(keys, DAHL, 1e-4, stepper=stepper)
-    expected = with_columns(Shooting(), [Scene(**keys)], DAHL, 1e-7)
-    (mean, error), (truth, known) = mean_and_error(found), mean_and_error(expected)
-    assert abs(mean - truth) <= error + known
-    assert found.columns["period"][0] == 2.0
-    assert found.columns["energy_contact"] == pytest.approx(expected.columns["energy_contact"], rel=1e-2)
-
-
 # --- a contact of constant stiffness ------------------------------------------------------------------------------
 
 
 def pressed(contact, amplitude=0.6):
     """A changing load."""
     return {"normal_load_variation": {"amplitude": amplitude, "waveform": "sine", "contact": contact}}
-
-
-def mean_of_constant_contact(law, belt_speed, load, oscillation, end, laps=6, steps=4000):
-    """Mean friction at a prescribed slip: z' = rate(w, z/n), friction(w, z/n, z'/n)*n, by Runge-Kutta steps."""
-    z, h, total = 0.0, end / steps, 0.0
-
-    def rates(tau, z):
-        n, w = load(tau), oscillation(tau) - belt_speed
-        rate = law.rate(w, z / n)
-        return rate, n * law.friction(w, z / n, rate / n)
-
-    for k in range(laps * steps):
-        tau = k * h
-        r1, f1 = rates(tau, z)
-        r2, f2 = rates(tau + 0.5 * h, z + 0.5 * h * r1)
-        r3, f3 = rates(tau + 0.5 * h, z + 0.5 * h * r2)
-        r4, f4 = rates(tau + h, z + h * r3)
-        z += h / 6.0 * (r1 + 2.0 * r2 + 2.0 * r3 + r4)
-        total += (f1 + 2.0 * f2 + 2.0 * f3 + f4) / 6.0 if k >= (laps - 1) * steps else 0.0
-    return -total / steps
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("stepper", ["exponential", "rk4"])
-@pytest.mark.parametrize(
-    "law",
-    [DAHL, LuGre(mu_kinetic=0.4, presliding_length=0.5, damping=0.05, viscosity=0.01)],
-    ids=["dahl", "lugre"],
-)
-def test_bristles_of_constant_stiffness_see_their_deflection_over_the_share_of_the_load(law, stepper):
-    keys = slip("sine", 1.0) | pressed("constant")
-    mean, error = mean_and_error(solve(keys, law, 1e-5, stepper=stepper))
-
-    def wave(tau):
-        return math.sin(0.7 * tau)
-
-    end = 2.0 * math.pi / 0.7
-    expected = mean_of_constant_contact(
-        law, 1.0, lambda tau: 1.0 + 0.6 * wave(tau), lambda tau: 3.0 * wave(tau), end
-    )
-    assert abs(mean - expected) <= error + 1e-5
-    follows, _ = mean_and_error(solve(slip("sine", 1.0) | pressed("per_load"), law, 1e-5, stepper=stepper))
-    assert abs(follows - expected) > 1e-2
 
 
 @deep("more kernels to compile")
@@ -288,15 +193,6 @@ def test_steppers_agree_on_a_mass_held_by_a_contact_of_constant_stiffness(law):
     for mean, error in found:
         assert abs(mean - found[0][0]) <= error + found[0][1]
         assert error < 5e-3
-
-
-@deep("more kernels to compile")
-def test_a_spring_in_series_with_coulomb_friction_yields_at_the_limit_of_the_moment():
-    law = Jenkins(mu=0.4, presliding_length=1e-3)
-    for contact in ("constant", "per_load"):
-        keys = slip("sine", 4.0) | pressed(contact, 0.9)
-        mean, error = mean_and_error(solve(keys, law, 1e-4))
-        assert abs(mean - 0.4) <= error + 2e-4  # slip never turns, and the spring is short
 
 
 def test_laws_of_several_memories_keep_no_constant_stiffness():

@@ -9,25 +9,25 @@ LIMITS = {
     "analysis": 2538,
     "bench": 2981,
     "beside the rooms": 87,
-    "charts": 1861,
+    "charts": 1859,
     "cli": 992,
     "compile": 1449,
-    "curves": 946,
+    "curves": 841,
     "laws": 690,
-    "methods": 11574,
+    "methods": 11534,
     "motion": 4895,
     "report": 1772,
-    "runner": 4341,
+    "runner": 4312,
     "scene": 1688,
     "study": 2791,
     "testing": 1497,
     "theory": 924,
-    "values": 1375,
-    "tests": 29575,
+    "values": 1374,
+    "tests": 29548,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 354
+MOST_FILES = 352
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

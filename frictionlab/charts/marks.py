@@ -20,9 +20,8 @@ from frictionlab.charts.looks import Looks
 from frictionlab.charts.sheet import LEGEND_FONT, text_width
 from frictionlab.values.columns import ONSETS
 
-SIGNS = {"stick_begins": ">", "stick_ends": "<", "reversal_ends": "d", "multiplier_leaves": "*"}
+SIGNS = {"stick_begins": ">", "stick_ends": "<", "reversal_ends": "d"}
 """The mark of each on the axis of belt speed: arrowheads enclose a window of stick."""
-LEAVES = "a multiplier leaves the unit circle"
 ONSET_LOOK: Any = {"markersize": 4.5, "markeredgecolor": "0.15", "markeredgewidth": 0.5}
 SAME_SPEED = 1e-6  # share of a belt speed: an onset and V_lin closer than this are one
 MOST_LINES = 3  # of names above a picture
@@ -62,9 +61,8 @@ def draw_onsets(axes: Axes, marks: Sequence[OnsetMark], color: Any) -> None:
 def onset_entries(marks: Sequence[OnsetMark]) -> list[Line2D]:
     """One entry of the legend for each kind that is drawn."""
     seen = [name for name in SIGNS if name in {each.onset for each in marks}]
-    words = {name: name.replace("_", " ") for name in seen} | {"multiplier_leaves": LEAVES}
     look: Any = {"linestyle": "none", "markerfacecolor": "0.6", **ONSET_LOOK}
-    return [Line2D([], [], marker=SIGNS[name], label=words[name], **look) for name in seen]
+    return [Line2D([], [], marker=SIGNS[name], label=name.replace("_", " "), **look) for name in seen]
 
 
 def draw_speed_marks(axes: Axes, curves: Sequence[CurveData], looks: Looks, width: float) -> float:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,13 +29,11 @@ from frictionlab.runner.words import column_in_si_words
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study.grid import StudyCurve
 from frictionlab.study.study import Study
-from frictionlab.theory.rest import is_convergent
 from frictionlab.values.columns import (
     ALSO_IN_SI,
     ATTRACTORS,
     BELT_SPEED,
     HARMONICS,
-    OF_MULTIPLIERS,
     OF_REST,
     OF_STATES,
     ONSETS,
@@ -47,7 +44,7 @@ if TYPE_CHECKING:
     from frictionlab.curves.onsets import Onset
 
 
-READ_FOR_ONSETS = frozenset([*OF_REST, *OF_MULTIPLIERS])
+READ_FOR_ONSETS = frozenset(OF_REST)
 _FEWEST = 2000
 """Motions of all curves together, however few points a run has."""
 _SHARE = 8
@@ -82,13 +79,6 @@ def _speed_scale(curve: StudyCurve) -> float:
     return 1.0 if si is None else si.scales.velocity
 
 
-def lacks_multipliers(study: Study, table: pd.DataFrame) -> bool:
-    """Whether onsets of multipliers would be missed, since the table was not asked for what they are found from."""
-    return not set(OF_MULTIPLIERS) <= set(table.columns) and any(
-        _is_followed(each) and _may_lose_stability(each) for each in study.curves()
-    )
-
-
 def _is_followed(curve: StudyCurve) -> bool:
     """Whether a mass is driven, at more than one belt speed."""
     scene = curve.scenes.scene
@@ -99,8 +89,6 @@ def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) 
     found = []
     if curve.given_law.memory_kind == "none" and set(OF_REST) <= set(rows.columns):
         found += _onsets_of_rest(curve, rows, tolerance, most)
-    if _may_lose_stability(curve) and set(OF_MULTIPLIERS) <= set(rows.columns):
-        found += _onsets_of_multipliers(curve, rows, tolerance, most)
     return found
 
 
@@ -119,33 +107,6 @@ def _onsets_of_rest(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, mos
     scene, law, method = curve.scenes.scene, curve.law, curve.method.method
     solve = partial(_solved, curve, tolerance)
     return onsets_along(CurveMotions(scene, law, solve, method.resolves_events), ascending, most)
-
-
-def _may_lose_stability(curve: StudyCurve) -> bool:
-    """Whether no theorem makes every motion attract, and the method closes the motion of one period."""
-    scene, law = curve.scenes.scene, curve.law
-    vectorial = scene.degrees_of_freedom < 2 or law.planar_form() == "vectorial"
-    return curve.method.method.resolves_events and vectorial and not is_convergent(scene, law)
-
-
-def _onsets_of_multipliers(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
-    from frictionlab.curves.multipliers import MOST_CLOSED, StabilityRow, multiplier_onsets
-
-    speeds = curve.scenes.belt_speeds
-    period, modulus = (rows[name].to_numpy(dtype=float) for name in OF_MULTIPLIERS[1:])
-    ok = (rows["status"] == "ok").to_numpy()
-    attracts = ok & (period == curve.scenes.scene.periods) & ~(modulus >= 1.0)
-    # where motions end on an orbit of several periods, or never repeat, that of one period does not attract
-    answered = (ok | (rows["status"] == "not_unique").to_numpy() | (modulus >= 1.0)) & (speeds > 0.0)
-    known = {
-        float(speeds[i]): StabilityRow(float(speeds[i]), bool(attracts[i])) for i in np.flatnonzero(answered)
-    }
-    changes = sum(one.attracts != other.attracts for one, other in pairwise(known[v] for v in sorted(known)))
-    if not changes or most < MOST_CLOSED * changes:
-        return []
-    return multiplier_onsets(
-        curve.scenes.scene, curve.law, tolerance, [known[speed] for speed in sorted(known)]
-    )
 
 
 def _solved(curve: StudyCurve, tolerance: float, scenes: Scenes) -> list[tuple[Answers, int]]:

@@ -20,7 +20,7 @@ from frictionlab.runner.files import SaveError
 from frictionlab.runner.folder import ASKED, RunFolder
 from frictionlab.runner.gathering import LONG_TABLE, GatheredTable, shown_rows, thinned
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
-from frictionlab.runner.more_tables import READ_FOR_ONSETS, attractor_table, lacks_multipliers, onset_table
+from frictionlab.runner.more_tables import READ_FOR_ONSETS, attractor_table, onset_table
 from frictionlab.runner.part import Part
 from frictionlab.runner.progress import Meter, Progress, silent
 from frictionlab.runner.run import Run
@@ -31,7 +31,7 @@ from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.study import registry
 from frictionlab.study.grid import StudyCurve, grid_size
 from frictionlab.study.study import Study
-from frictionlab.values.columns import ALWAYS, INPUTS, ONSETS_GROUP, RESULTS
+from frictionlab.values.columns import ALWAYS, INPUTS, RESULTS
 
 
 class Interrupted(KeyboardInterrupt):
@@ -258,13 +258,8 @@ class StudyRun:
         )
 
     def _onsets(self, table: pd.DataFrame) -> pd.DataFrame:
-        """The onsets of the curves; where the table lacks what they are found from, the points are solved again."""
-        study = self.study
-        if len(table) and lacks_multipliers(study, table):
-            asked = replace(study, columns=(ONSETS_GROUP,), expect=())
-            # chunks are kept with those of this run
-            table = StudyRun(asked, None, self.kept, RunWays()).run().table
-        return onset_table(study, table)
+        """The onsets of the curves."""
+        return onset_table(self.study, table)
 
     def _judged(self, done: Run, stopped: bool = False) -> Run:
         """The run with its verdicts, judged on the columns that they speak of."""

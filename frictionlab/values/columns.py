@@ -165,8 +165,6 @@ OF_SHAPE = (
 """The result columns that the measures of a curve's shape are read from, besides the mean and its error."""
 OF_REST = "status", "stick_fraction", "reversals"
 """Those between which stick and reversal begin and end."""
-OF_MULTIPLIERS = "status", "period", "floquet"
-"""Those between which a multiplier leaves the unit circle."""
 
 DEFAULT: tuple[str, ...] = (
     *("mean_friction", "error", "error_kind", "status", "reason", "unique", "stick_fraction", "reversals"),
@@ -201,7 +199,7 @@ GROUPS: dict[str, str] = {
 _OF_TABLES = {
     USUAL: DEFAULT,
     SHAPE: OF_SHAPE,
-    ONSETS_GROUP: tuple(dict.fromkeys((*OF_REST, *OF_MULTIPLIERS))),
+    ONSETS_GROUP: OF_REST,
 }
 
 
@@ -332,7 +330,7 @@ CURVE_MEASURES: tuple[str, ...] = tuple(name for name in CURVES if f"{name}_erro
 """Those that measure a curve."""
 
 ONSETS: dict[str, str] = {
-    "onset": "stick_begins, stick_ends, reversal_ends or multiplier_leaves, read along increasing belt speed",
+    "onset": "stick_begins, stick_ends or reversal_ends, read along increasing belt speed",
     "belt_speed": "where that is",
     "belt_speed_error": "bound on its error",
     "how": "what was solved for, how the multiplier leaves (+1, -1, complex), or why it was not located",

@@ -12,7 +12,6 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.curves.multipliers import how_it_leaves
 from frictionlab.curves.onsets import DistanceAt, change_between
 
 LINE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 1, "drive": {"amplitude": 10, "frequency": 1}}
@@ -179,10 +178,6 @@ def test_a_search_goes_round_places_without_an_answer() -> None:
     assert abs(stopped.value - 0.7) <= stopped.error
 
 
-DOUBLING = LINE | {"drive": {"unbalance": 10, "frequency": 1.5}}
-DAMPED = {"kind": "lugre", "mu_kinetic": 0.4, "presliding_length": 10, "contact_damping": 2}
-
-
 FILM = """
 from frictionlab.laws.base import Positive, SlidingLaw
 
@@ -209,31 +204,3 @@ def test_friction_that_vanishes_at_rest_never_sticks_and_its_reversals_end(tmp_p
     place, speeds = onsets["belt_speed"][0], table["scene.belt_speed"]
     assert table["reversals"][speeds < place].all()
     assert not table["reversals"][speeds > place].any()
-
-
-@deep("seconds of bristles at a tolerance")
-def test_a_multiplier_leaves_at_minus_one_where_the_period_doubles() -> None:
-    onsets = fl.run(study(DOUBLING, [11.0, 12.5], DAMPED, tolerance=1e-6)).onsets
-
-    assert onsets["onset"].tolist() == ["multiplier_leaves"]
-    assert onsets["how"].tolist() == ["-1"]
-    assert onsets["belt_speed"].to_numpy() == pytest.approx([11.49954], abs=1e-4)
-    assert (onsets["belt_speed_error"] < 1e-3).all()
-    place, beside = onsets["belt_speed"][0], 10.0 * onsets["belt_speed_error"][0]
-    beyond = [place - beside, place - 2.0 * beside]
-    rows = fl.run(study(DOUBLING, beyond, DAMPED, columns=["onsets"])).table
-    assert rows["floquet"].is_monotonic_decreasing
-    assert rows["floquet"].between(0.99, 1.0).all()
-
-
-@pytest.mark.parametrize(
-    ("inside", "outside", "how"),
-    [
-        (0.999, 1.001, "+1"),
-        (-0.999, -1.001, "-1"),
-        (0.8 + 0.599j, 0.8 + 0.601j, "complex, at 36.92 degrees"),
-        (0.4, -2.5, "-1: jumps from 0.4 to -2.5"),
-    ],
-)
-def test_how_a_multiplier_leaves(inside: complex, outside: complex, how: str) -> None:
-    assert how_it_leaves(inside, outside) == how

@@ -37,7 +37,13 @@ from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
 from frictionlab.methods.periodic.lane_record import differentiate_in_lanes, record_in_lanes
 from frictionlab.methods.periodic.near_rest import answer_near_rest
-from frictionlab.methods.periodic.period_map import MAP_KINDS, map_kind, unpack, whole_size_of
+from frictionlab.methods.periodic.period_map import (
+    MAP_KINDS,
+    map_kind,
+    size_of_deviation,
+    unpack,
+    whole_size_of,
+)
 from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.methods.under_way import once
@@ -111,6 +117,8 @@ class Transient(NamedTuple):
 
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""
+SHIFT = 1e-5
+"""Of the size of a state: the largest offset of difference quotients."""
 FINEST = 1e-15
 """No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
@@ -330,6 +338,18 @@ class PeriodicProblem:
         """
         curve, _ = self.called(belt_speeds, states.copy(), self.goal, MAPPED)
         return np.asarray(curve.states)
+
+    def derivative(self, belt_speed: float, state: Floats) -> Floats:
+        """The derivative of that map at a state [size, size], by central differences of fine maps.
+
+        Shifts are below the way the belt moves in a period, on which the pattern of events hangs.
+        """
+        usual = SHIFT * float(interpreted(size_of_deviation)(self.mass.normal_load, state))
+        way = abs(belt_speed) * 2.0 * math.pi / self.mass.frequency
+        shift, n = min(usual, max(0.01 * way, 1e-3 * usual)), self.size
+        starts = np.concatenate([state + shift * np.eye(n), state - shift * np.eye(n)])
+        ends = self.mapped(np.full(2 * n, belt_speed), starts)
+        return np.asarray((ends[:n] - ends[n:]).T / (2.0 * shift))
 
     def repeated_once(self, scene: Scene, states: Floats) -> tuple[Floats, Floats]:
         """These states [n, size] after all that changes in time has repeated once, and the mean friction along x1

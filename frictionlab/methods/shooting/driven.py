@@ -26,7 +26,6 @@ from frictionlab.methods.base import (
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
-from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.prescribed.memory import HOLDS
 from frictionlab.methods.shooting.attractors import (
     MOST,
@@ -72,6 +71,12 @@ SURELY = 1e-6
 """By how much a multiplier above one is no rounding error."""
 CENTRAL = 1e-6
 """Error of multipliers by central quotients of a law without memory, absolute or of those above one."""
+FINE, KINK = 1e-8, 1e-3
+"""Least error of multipliers by quotients of fine maps, and change that only a map without a derivative explains."""
+NO_DERIVATIVE = (
+    "no multiplier: the period map has no derivative here; over two shifts its quotients give {rough:.4g} and "
+    "{fine:.4g}"
+)
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
 MISFIT = (
@@ -360,24 +365,32 @@ class SteadyStates:
     @cached_property
     def _multipliers(self) -> Multipliers:
         if self.whole and self.problem.law.count() > 0:
-            return self._sharpened()
+            return self._by_central_quotients()
         found = self._floquet()
         ok = np.array([status == "ok" for status in self.status])
         error = np.where(ok & ~np.isnan(found), CENTRAL * np.maximum(found, 1.0), np.nan)
         return Multipliers(found, error, [""] * len(found))
 
-    def _sharpened(self) -> Multipliers:
-        """Of a law with memory, whose monodromies are one-sided quotients."""
+    def _by_central_quotients(self) -> Multipliers:
+        """Of a law with memory, whose monodromies are one-sided quotients: anew, by fine maps on both sides.
+
+        What changes by that is the error. Where the map has a kink within the shift no number is the multiplier.
+        """
         n = len(self.scenes)
         modulus, error, reason = self.multipliers.copy(), np.full(n, np.nan), [""] * n
-        motions = {
-            i: ClosedMotion(float(self.belt_speeds[i]), state, matrix)
-            for i, (state, matrix) in enumerate(zip(self.states, self.matrices, strict=True))
-            if self.status[i] == "ok" and self.spans[i] == 1
-            if state is not None and matrix is not None and matrix.any() and np.isfinite(matrix).all()
-        }
-        for i, one in zip(motions, sharpened(self.problem, list(motions.values())), strict=True):
-            modulus[i], error[i], reason[i] = one
+        for i, (state, matrix) in enumerate(zip(self.states, self.matrices, strict=True)):
+            if state is None or matrix is None or not matrix.any() or not np.isfinite(matrix).all():
+                continue
+            if self.status[i] != "ok" or self.spans[i] != 1:
+                continue
+            central = self.problem.derivative(float(self.belt_speeds[i]), state)
+            rough, fine = largest_modulus(np.array([matrix, central])).tolist()
+            change = abs(fine - rough)
+            if change <= KINK * max(fine, 1e-2):
+                modulus[i], error[i] = fine, 2.0 * change + FINE
+            else:
+                modulus[i] = math.nan
+                reason[i] = NO_DERIVATIVE.format(rough=rough, fine=fine)
         return Multipliers(modulus, error, reason)
 
     def _attracts(self, i: int) -> bool:

@@ -83,7 +83,7 @@ EDITS = [
     ("kind: coulomb, mu: 0.4", "kind: lugre, mu_kinetic: 0.4, stiffness: 40, mu_static: 0.3, label: coulomb",
      "14:62: laws[0].mu_static: must be >= mu_kinetic = 0.4, got 0.3"),
     ("kind: coulomb, mu: 0.4", "kind: lugre, mu_kinetic: 0.4, stiffness: 40, planar: vectoral, label: coulomb",
-     "14:59: laws[0].planar: must be 'vectorial', 'rotated' or 'per-axis'; got the text 'vectoral'"),
+     "14:59: laws[0].planar: must be 'vectorial' or 'per-axis'; got the text 'vectoral'"),
     ("kind: coulomb, mu: 0.4", "kind: elasto-plastic, mu_kinetic: 0.4, stiffness: 40, breakaway_ratio: 1, label: coulomb",
      "14:77: laws[0].breakaway_ratio: must be < 1, got 1"),
     ("kind: coulomb, mu: 0.4", "kind: dahl, mu: 1e-300, presliding_length: 1e300, label: coulomb",

@@ -13,21 +13,21 @@ LIMITS = {
     "cli": 992,
     "compile": 1449,
     "curves": 841,
-    "laws": 690,
-    "methods": 11534,
-    "motion": 4895,
+    "laws": 693,
+    "methods": 11474,
+    "motion": 4883,
     "report": 1772,
-    "runner": 4312,
+    "runner": 4307,
     "scene": 1688,
     "study": 2791,
-    "testing": 1497,
-    "theory": 924,
+    "testing": 1492,
+    "theory": 911,
     "values": 1374,
-    "tests": 29548,
+    "tests": 29476,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 352
+MOST_FILES = 351
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

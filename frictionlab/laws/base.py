@@ -266,12 +266,12 @@ class FrictionLaw(Labelled, ABC):
         """
         return 0.0
 
-    def planar_form(self) -> Literal["vectorial", "rotated", "per-axis"]:
+    def planar_form(self) -> Literal["vectorial", "per-axis"]:
         """Return how the law of one direction extends to the plane.
 
         Returns
         -------
-        {"vectorial", "rotated", "per-axis"}
+        {"vectorial", "per-axis"}
             ``vectorial``, a law of vectors, if not declared.
         """
         return "vectorial"
@@ -302,7 +302,7 @@ class FrictionLaw(Labelled, ABC):
         bool
             True if this holds at all slip speeds up to ``speed``.
         """
-        return self.planar_form() != "rotated"
+        return True
 
     def obeys(self, check: str) -> bool:
         """Check whether the law claims to pass a check of the battery.

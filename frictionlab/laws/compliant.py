@@ -68,7 +68,7 @@ class CompliantLaw(BristleLaw, ABC):
         Presliding length, friction coefficient in slow sliding over stiffness [scene length].
     contact_stiffness : float, > 0, optional
         Contact stiffness, ``stiffness`` times normal load [K_1].
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
     Examples
@@ -169,7 +169,7 @@ class DampedLaw(CompliantLaw, ABC):
         Presliding length, friction coefficient in slow sliding over stiffness [scene length].
     contact_stiffness : float, > 0, optional
         Contact stiffness, ``stiffness`` times normal load [K_1].
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
     Examples

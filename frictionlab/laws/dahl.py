@@ -31,7 +31,7 @@ class Dahl(CompliantLaw):
         Presliding length, mu/stiffness [scene length].
     contact_stiffness : float, > 0, optional
         Contact stiffness, ``stiffness`` times normal load [K_1].
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
     References
@@ -81,7 +81,7 @@ class Dahl(CompliantLaw):
         return (
             ""
             if self.exponent == 1.0
-            else "Dahl friction has a vector form for exponent 1 alone; use planar rotated or per-axis"
+            else "Dahl friction has a vector form for exponent 1 alone; use planar per-axis"
         )
 
     def largest_deflection(self) -> float:

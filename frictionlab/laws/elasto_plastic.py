@@ -48,7 +48,7 @@ class ElastoPlastic(StribeckBristle):
         ``contact_damping`` is given.
     contact_damping : float, >= 0, optional
         Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
     References

@@ -27,7 +27,7 @@ class Jenkins(CompliantLaw):
         Presliding length, mu/stiffness [scene length].
     contact_stiffness : float, > 0, optional
         Contact stiffness, ``stiffness`` times normal load [K_1].
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Extension to the plane of the law of one direction, as in ``BristleLaw``.
 
     References

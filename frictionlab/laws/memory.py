@@ -10,9 +10,11 @@ import math
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Literal
 
+from pydantic import field_validator
+
 from frictionlab.laws.base import FrictionLaw
 
-VECTORIAL, ROTATED, PER_AXIS = 0.0, 1.0, 2.0
+VECTORIAL, PER_AXIS = 0.0, 1.0
 
 
 class BristleLaw(FrictionLaw, ABC):
@@ -22,11 +24,9 @@ class BristleLaw(FrictionLaw, ABC):
 
     Parameters
     ----------
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Extension to the plane of the law of one direction. ``vectorial``: v and z are vectors (isotropic;
-        Velenis & Tsiotras, 2002). ``rotated``: one scalar deflection along the current slip direction
-        (isotropic, without memory of direction). ``per-axis``: one law per axis (not isotropic: its yield set
-        is a square).
+        Velenis & Tsiotras, 2002). ``per-axis``: one law per axis (not isotropic: its yield set is a square).
 
     Examples
     --------
@@ -46,7 +46,16 @@ class BristleLaw(FrictionLaw, ABC):
 
     memory_kind: ClassVar[Literal["bristle"]] = "bristle"
 
-    planar: Literal["vectorial", "rotated", "per-axis"] = "vectorial"
+    planar: Literal["vectorial", "per-axis"] = "vectorial"
+
+    @field_validator("planar", mode="before")
+    @classmethod
+    def _not_rotated(cls, value: Any) -> Any:
+        if value == "rotated":
+            raise ValueError(
+                "rotated bristles, which remember no direction, are gone: use vectorial or per-axis"
+            )
+        return value
 
     @abstractmethod
     def rate(self, v: Any, z: Any) -> Any:
@@ -87,7 +96,7 @@ class BristleLaw(FrictionLaw, ABC):
     @property
     def form(self) -> float:
         """Number that stands for ``planar`` in kernels."""
-        return {"vectorial": VECTORIAL, "rotated": ROTATED, "per-axis": PER_AXIS}[self.planar]
+        return VECTORIAL if self.planar == "vectorial" else PER_AXIS
 
     def count(self) -> int:
         """Return the number of memories, 1.
@@ -99,12 +108,12 @@ class BristleLaw(FrictionLaw, ABC):
         """
         return 1
 
-    def planar_form(self) -> Literal["vectorial", "rotated", "per-axis"]:
+    def planar_form(self) -> Literal["vectorial", "per-axis"]:
         """Return how the law of one direction extends to the plane: the parameter ``planar``.
 
         Returns
         -------
-        {"vectorial", "rotated", "per-axis"}
+        {"vectorial", "per-axis"}
             Form.
         """
         return self.planar
@@ -278,14 +287,9 @@ def bristle_in_the_plane(law: Any, v: complex, z: complex) -> Any:
     if law.form == VECTORIAL:
         dz = law.rate(v, z)
         return dz, law.friction(v, z, dz)
-    if law.form == PER_AXIS:
-        dz1, dz2 = law.rate(v.real, z.real), law.rate(v.imag, z.imag)
-        along = law.friction(v.real, z.real, dz1)
-        return complex(dz1, dz2), complex(along, law.friction(v.imag, z.imag, dz2))
-    speed = abs(v)
-    rate = law.rate(speed, z.real)
-    direction = v / speed if speed > 0.0 else complex(0.0, 0.0)
-    return complex(rate, 0.0), law.friction(speed, z.real, rate) * direction
+    dz1, dz2 = law.rate(v.real, z.real), law.rate(v.imag, z.imag)
+    along = law.friction(v.real, z.real, dz1)
+    return complex(dz1, dz2), complex(along, law.friction(v.imag, z.imag, dz2))
 
 
 class MemoryLaw(FrictionLaw, ABC):

@@ -41,7 +41,7 @@ class StribeckBristle(DampedLaw, ABC):
         ``contact_damping`` is given.
     contact_damping : float, >= 0, optional
         Contact damping, ``damping`` times normal load [M omega_1]; given instead of ``damping``.
-    planar : {"vectorial", "rotated", "per-axis"}, default "vectorial"
+    planar : {"vectorial", "per-axis"}, default "vectorial"
         Form of the law in the plane, as in ``BristleLaw``.
     """
 
@@ -95,7 +95,7 @@ class StribeckBristle(DampedLaw, ABC):
     def damps_across(self, speed: float) -> bool:
         """Check a sufficient condition that friction takes energy from motion across the slip.
 
-        It is damping^2 speed/mu_kinetic <= 4 (damping + viscosity), in a form that is not ``rotated``.
+        It is damping^2 speed/mu_kinetic <= 4 (damping + viscosity).
         """
         lost = self.bristle_damping + self.viscosity
         return super().damps_across(speed) and self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost

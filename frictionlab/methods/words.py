@@ -60,10 +60,6 @@ class ModelWord(StrEnum):
     WITH_MEMORY = "memory", "mass and memory solved together (Rodas5P)"
     SPRINGS = "sum of springs", "what of the body remembers followed as a sum of eight springs that relax"
     NEAR_REST = "near rest", "slip near rest in polar coordinates (Radau IIA)"
-    SATURATED = (
-        "saturated",
-        "the one deflection along the slip stays at its limit: friction is that of sliding",
-    )
     AT_REST = "undriven rest", "undriven: at rest, where the motion from scene.initial ends"
     SLIDES = "undriven sliding", "undriven: steady sliding, which attracts"
     SLIDES_FREELY = (

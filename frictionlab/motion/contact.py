@@ -29,9 +29,7 @@ def _rate_of_a_bristle_in_the_plane(law: Any, memory: Any, k: int, w: complex) -
     z = memory[0]
     if law.form == VECTORIAL:
         return law.rate(w, z)
-    if law.form == PER_AXIS:
-        return complex(law.rate(w.real, z.real), law.rate(w.imag, z.imag))
-    return complex(law.rate(abs(w), z.real), 0.0)
+    return complex(law.rate(w.real, z.real), law.rate(w.imag, z.imag))
 
 
 _rate_of_a_bristle = by_dimension(
@@ -51,13 +49,7 @@ def _friction_of_a_bristle_in_the_plane(law: Any, memory: Any, moving: Any, w: c
     z, dz = memory[0], moving[0]
     if law.form == VECTORIAL:
         return law.friction(w, z, dz)
-    if law.form == PER_AXIS:
-        across = law.friction(w.imag, z.imag, dz.imag)
-        return complex(law.friction(w.real, z.real, dz.real), across)
-    speed = abs(w)
-    if speed == 0.0:
-        return complex(0.0, 0.0)
-    return (law.friction(speed, z.real, dz.real) / speed) * w
+    return complex(law.friction(w.real, z.real, dz.real), law.friction(w.imag, z.imag, dz.imag))
 
 
 _friction_of_a_bristle = by_dimension(
@@ -124,9 +116,7 @@ def _moved(law: Any, h: float, v: Any, z: Any) -> Any:
 def _carried_in_the_plane(law: Any, h: float, v: complex, z: complex) -> complex:
     if law.form == VECTORIAL:
         return _moved(law, h, v, z)
-    if law.form == PER_AXIS:
-        return complex(_moved(law, h, v.real, z.real), _moved(law, h, v.imag, z.imag))
-    return complex(_moved(law, h, abs(v), z.real), 0.0)
+    return complex(_moved(law, h, v.real, z.real), _moved(law, h, v.imag, z.imag))
 
 
 advance_bristle = by_dimension(lambda law, h, v, z: _moved(law, h, v, z), _carried_in_the_plane)

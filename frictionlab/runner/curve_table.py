@@ -153,15 +153,7 @@ def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:
 def _shakedown(
     law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool
 ) -> Shakedown | None:
-    """Return the shakedown of the bristles of a curve's law.
-
-    Return None for ``rotated`` bristles in the plane, which do not remember a direction.
-    """
-    in_a_plane = value("scene.transverse.natural_frequency") or value(
-        "scene.transverse_slip.velocity_amplitude"
-    )
-    if in_a_plane and law.planar == "rotated":
-        return None
+    """Return the shakedown of the bristles of a curve's law."""
     return shakedown_of_slip(law, value) if prescribed else shakedown_of_body(law, value, *forces)
 
 

@@ -72,8 +72,6 @@ def reflect(law: FrictionLaw, memory: ContactMemory) -> ContactMemory:
 
 def has_direction(law: FrictionLaw) -> bool:
     """Whether the memory has a direction."""
-    if isinstance(law, BristleLaw):
-        return law.planar != "rotated"
     return not isinstance(law, MemoryLaw) or law.memory_kind == "deflections"
 
 

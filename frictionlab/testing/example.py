@@ -82,8 +82,6 @@ class Given:
         directions = strategies.directions if planar else st.just(1.0)
         vectors = st.builds(lambda share, turn: share * turn, strategies.shares, directions)
         if isinstance(law, BristleLaw):
-            if planar and law.planar == "rotated":
-                vectors = strategies.shares.map(complex)
             return (self.draw("deflection", vectors.map(lambda share: share * deflection_scale(law))),)
         if isinstance(law, MemoryLaw):
             return self._memories(law, vectors if law.memory_kind == "deflections" else None)

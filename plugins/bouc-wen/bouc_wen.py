@@ -95,5 +95,5 @@ class BoucWen(CompliantLaw):
         return self.beta_share >= 0.5
 
     def damps_across(self, speed: float) -> bool:
-        """Where it is passive and vectorial or per axis: |z2|^2 then only falls by yielding."""
-        return self.passive() and self.planar != "rotated"
+        """Where it is passive: |z2|^2 then only falls by yielding."""
+        return self.passive()

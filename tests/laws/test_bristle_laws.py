@@ -58,7 +58,7 @@ def has_a_vector_form(law: Any) -> bool:
 def in_a_form_of_the_plane(name: str) -> st.SearchStrategy[Any]:
     """A law in any planar form it has a meaning in."""
     return VECTOR_LAWS[name] | BRISTLE_LAWS[name].map(
-        lambda law: law if law.planar != "vectorial" else law.model_copy(update={"planar": "rotated"})
+        lambda law: law.model_copy(update={"planar": "per-axis"})
     )
 
 

@@ -13,7 +13,7 @@ from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.decay import exp_power_decay, steepest_slope
 from frictionlab.laws.lugre import LuGre
-from frictionlab.laws.memory import BristleLaw, MemoryLaw, bristle_in_the_plane
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.laws.stribeck import Stribeck
 
 
@@ -144,12 +144,6 @@ def test_viscosity_helps_bristles_to_damp_motion_across_up_to_a_speed() -> None:
 
     assert law.damps_across(0.3 * 4.0 * 0.75 / 0.36 * (1.0 - 1e-12))
     assert not law.damps_across(0.3 * 4.0 * 0.75 / 0.36 * (1.0 + 1e-12))
-
-
-def test_a_bristle_along_the_slip_rubs_no_way_at_rest() -> None:
-    law = LuGre(mu_kinetic=0.3, stiffness=2, damping=0.1, planar="rotated")
-
-    assert bristle_in_the_plane(law, 0j, 0.1 + 0j) == (0j, 0j)
 
 
 def test_dahl_friction_has_a_vector_form_for_exponent_one_alone() -> None:

@@ -20,7 +20,7 @@ LAWS = {name: scene_table.law_of(name) for name in scene_table.LAWS} | {
     "coulomb, more at rest": Coulomb(mu=0.4, mu_static=0.6),
     "dahl without a vector form": Dahl(mu=0.4, presliding_length=0.1, exponent=2.0),
     "dahl per axis": Dahl(mu=0.4, presliding_length=0.1, exponent=2.0, planar="per-axis"),
-    "rotated": ElastoPlastic(mu_kinetic=0.4, presliding_length=0.1, planar="rotated"),
+    "elasto-plastic per axis": ElastoPlastic(mu_kinetic=0.4, presliding_length=0.1, planar="per-axis"),
 }
 
 

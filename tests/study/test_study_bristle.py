@@ -265,7 +265,7 @@ def test_the_listing_of_a_law_has_every_parameter_with_limits_unit_and_meaning(k
         "presliding_length": "m",
         "contact_stiffness": "N/m",
     }
-    assert given["planar"]["limits"] == "vectorial | rotated | per-axis"
+    assert given["planar"]["limits"] == "vectorial | per-axis"
     assert all(parameter["limits"] and parameter["meaning"] for parameter in given.values())
     assert {"passive", "rate_independent"} <= set(listed(kind)["declares"])
 

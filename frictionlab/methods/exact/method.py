@@ -18,7 +18,6 @@ from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.continuation import make_orbits
 from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.oscillator import RESONANT
-from frictionlab.methods.prescribed.bristle import along_one_line
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.method import suggest_shooting
 from frictionlab.methods.words import ModelWord
@@ -47,7 +46,7 @@ def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
         return ModelWord.STIFF_CONTACT.sentence
     if not law.exact_path():
         return ModelWord.NO_PATH.sentence
-    if not along_one_line(scene, law):
+    if not scene.load_along_belt_only:
         return ModelWord.TWO_WAYS.sentence
     return None
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.collocation import collocated, plane_loop
@@ -69,7 +68,7 @@ def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
     if along.belt_speed == 0.0 and room > 0.0:
         return Open.up_to(law, room, ELASTIC)
     if not law.exact_path():
-        slip = Oscillation(along.phasor, 0j, along.frequency, 0.0)
+        slip = Oscillation(along.phasor, 0j, along.frequency)
         return collocated(law, slip, along.belt_speed, tolerance, 0.0)
     return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)
 
@@ -114,18 +113,13 @@ def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats
 ROUNDING = 2.0**-50
 
 
-def along_one_line(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether the prescribed slip keeps to the belt's line, and the law with it."""
-    return scene.load_along_belt_only and (scene.transverse_slip is None or law.planar_form() != "rotated")
-
-
 class BristlePoint:
-    """One scene of a prescribed sine, or of an ellipse in the vectorial or rotated form, and the answer."""
+    """One scene of a prescribed sine, or of an ellipse, and the answer."""
 
     def __init__(self, scene: Scene, law: BristleLaw, tolerance: float) -> None:
         self.scene, self.motion, self.belt_speed = scene, scene.motion(), scene.belt_speed
         self.law = law.under_load(self.motion.normal_load)
-        self.line = along_one_line(scene, law)
+        self.line = scene.load_along_belt_only
         if self.line:
             along = Along(self.motion.velocity, self.belt_speed, self.motion.frequency)
             self.closed = line_loop(self.law, along, tolerance)

@@ -1,8 +1,8 @@
-"""The closed loop of a bristle law by collocation: along a line, in the plane in the vectorial and the rotated form.
+"""The closed loop of a bristle law by collocation: along a line, and of vectors in the plane.
 
 Licence (48 scenes at 1e-8, softness 1e-3 to 30): against the period map of a memory of any size as fast along a line,
-0.7 to 2.2 times faster in the plane in the median of a law, 3 to 6 times in the rotated form. That map leaves open
-what this answers: rotated forms, and contacts that the slip bends by less than a thousandth of their length.
+0.7 to 2.2 times faster in the plane in the median of a law. That map leaves open what this answers: contacts that the
+slip bends by less than a thousandth of their length.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.laws.memory import ROTATED, BristleLaw
-from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, Closed, Loop, Open, Vectors
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, Closed, Open, Vectors
 from frictionlab.methods.prescribed.periodic_deflection import (
     Accuracy,
     closed_deflection,
@@ -40,23 +40,14 @@ _SlowPassage = tuple[float, float]
 
 def plane_loop(law: BristleLaw, motion: Motion, belt_speed: float, tolerance: float) -> Closed | Open:
     """The closed loop, or why there is none."""
-    rotated = law.form == ROTATED
-    slip = Oscillation(motion.velocity, motion.transverse_velocity, motion.frequency, 1.0 if rotated else 0.0)
+    slip = Oscillation(motion.velocity, motion.transverse_velocity, motion.frequency)
     if slip.along == 0 and slip.across == 0 and belt_speed == 0.0:
         return Open.up_to(law, natural_reach(law, 1.0), NOTHING_MOVES)
-    if belt_speed == 0.0 and not rotated:
+    if belt_speed == 0.0:
         room = _room(slip, law.elastic_deflection())
         if room > 0.0:
             return Open.up_to(law, room, ELASTIC)
-    if not rotated:
-        return collocated(law, slip, belt_speed, tolerance, 0j)
-    found = collocated(law, slip, belt_speed, tolerance, natural_reach(law, 1.0))
-    if isinstance(found, Open):
-        return found
-    loop, finer = (_turned(one, slip, belt_speed) for one in (found.loop, _halved(found.loop)))
-    return Closed(
-        finer, found.error + 2.0 * abs(finer.mean - loop.mean), ModelWord.COLLOCATION, found.seconds
-    )
+    return collocated(law, slip, belt_speed, tolerance, 0j)
 
 
 def collocated(
@@ -69,27 +60,11 @@ def collocated(
     return found if isinstance(found, Open) else found._replace(model=ModelWord.COLLOCATION)
 
 
-def _halved(loop: Loop) -> Loop:
-    """The loop on panels cut in two, deflection and friction by the polynomials of the whole ones."""
-    width = np.repeat(0.5 * loop.width, 2)
-    start = np.stack((loop.start, loop.start + 0.5 * loop.width), axis=1).ravel()
-    angle = start[:, None] + width[:, None] * loop.points
-    deflection, friction = (loop.at(angle, values) for values in (loop.deflection, loop.friction))
-    return loop._replace(start=start, width=width, deflection=deflection, friction=friction)
-
-
 def _circle(law: BristleLaw) -> float:
     """Where the deflection follows the slip: nowhere in particular (-1), while unloading (0), within a circle."""
     if law.yield_deflection() < math.inf:
         return law.yield_deflection()
     return 0.0 if law.elastic_unloading() else -1.0
-
-
-def _turned(loop: Loop, slip: Oscillation, belt_speed: float) -> Loop:
-    """The loop with slips and frictions as vectors: friction of the speed alone acts along the slip."""
-    v = _slip(slip, belt_speed, loop.start[:, None] + loop.width[:, None] * loop.points)
-    direction = v / np.maximum(np.abs(v), 1e-300)
-    return loop._replace(slip=v, friction=loop.friction * direction)
 
 
 def _slip(slip: Oscillation, belt_speed: float, angle: Floats) -> Vectors:
@@ -162,7 +137,7 @@ def _near_ends(
 ) -> tuple[float, float]:
     """The angles after a passage and before the next within which steps need not shorten further."""
     here, depth = passage
-    if slip.across != 0.0 or slip.rotated > 0.0:
+    if slip.across != 0.0:
         near = max(depth, min(0.01 * _layer(law, slip, belt_speed, here), 1e-3), CLOSEST)
         return near, max(next_depth, CLOSEST)
     if abs(belt_speed) < abs(slip.along):  # what is before a reversal is smooth

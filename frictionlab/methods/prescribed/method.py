@@ -1,8 +1,5 @@
 """Mean friction under a prescribed slip velocity.
 
-Licence of bristles that end saturated (8 scenes): 5 times faster than following a
-deflection that stays at its limit (4 to 5.7 times), with the same 13 digits.
-
 Friction by axis under a prescribed slip in the plane: each axis slips along one line, whatever the other does.
 """
 
@@ -16,7 +13,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import PROVED, TESTED, Answers, Status
-from frictionlab.methods.prescribed.bristle import BristlePoint, along_one_line
+from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.memory import MemoryPoint
 from frictionlab.methods.prescribed.varying_legs import LegsPoint
@@ -26,7 +23,6 @@ from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import End, Orbit
 from frictionlab.motion.orbit.recorder import NODES, interpolation_weights
 from frictionlab.scene.scene import Scene, Slip
-from frictionlab.theory.sliding_stability import saturates
 from frictionlab.values.quantities import Floats
 
 
@@ -103,7 +99,7 @@ POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
 
 
 def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
-    line = along_one_line(scene, law)
+    line = scene.load_along_belt_only
     if not line and law.planar_form() == "per-axis":
         return AxesPoint(scene, lambda axis: _bristle_point(axis, law, tolerance))
     if scene.is_harmonic:
@@ -114,9 +110,7 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:
-    turns = not along_one_line(scene, law) and not scene.constant_contact
-    slides_on = turns and saturates(law.under_load(scene.motion().normal_load))
-    return POINTS["none" if slides_on else law.memory_kind](scene, law, tolerance)
+    return POINTS[law.memory_kind](scene, law, tolerance)
 
 
 def _told_uniqueness(row: Point) -> str:

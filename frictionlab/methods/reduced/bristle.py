@@ -85,7 +85,7 @@ class Loops:
         return _summed(psi, rub * (math.tau / _SAMPLES))
 
     def _collocated(self, amplitude: float) -> Friction:
-        slip = Oscillation(complex(amplitude), 0j, self.frequency, 0.0)
+        slip = Oscillation(complex(amplitude), 0j, self.frequency)
         scale = Accuracy.of(self.law, slip, self.belt_speed, 1.0).scale
         parts = stretches(self.law, slip, self.belt_speed)
         closing = Closing(self.law, slip, parts, scale, _PER_STEP)

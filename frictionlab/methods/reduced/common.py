@@ -17,7 +17,6 @@ from frictionlab.methods.base import Answers, ReducedModel, Status, beyond_linea
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.shooting.method import Shooting, suggest_shooting
-from frictionlab.methods.shooting.saturated import HELD
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Motion
@@ -37,6 +36,7 @@ UNSTEADY = "the motion of one drive period may be unstable: the mean may not be 
 AT_REST = (
     "on a belt at rest one harmonic gives sliding only if the load exceeds 4/pi of mu*normal_load; use exact"
 )
+HELD = "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
 DOES_NOT_DECAY = "without damping and without slip reversal the free oscillation does not decay; use exact"
 
 

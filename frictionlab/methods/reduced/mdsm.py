@@ -14,6 +14,7 @@ from frictionlab.methods.base import Answers, beyond_linear
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip, piece_at
 from frictionlab.methods.reduced.common import (
+    HELD,
     Modelled,
     OfOneModel,
     Sines,
@@ -23,7 +24,6 @@ from frictionlab.methods.reduced.common import (
     plane_refusal,
     steadied,
 )
-from frictionlab.methods.shooting.saturated import HELD
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Motion

@@ -16,7 +16,6 @@ from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
-from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.parts import BENDING, BY_TABLE, REMEMBERING
@@ -29,7 +28,6 @@ Solve = Callable[[Sequence[Scene], FrictionLaw, float], Answers]
 CASES: tuple[tuple[Applies, Solve], ...] = (
     (lambda scene, _law: scene.degrees_of_freedom == 0, solve_prescribed),
     (lambda scene, _law: scene.undriven, solve_undriven),
-    (saturates_in_the_plane, solve_saturated),
     (axes_apart, solve_apart),
     (lambda _scene, _law: True, solve_driven),
 )

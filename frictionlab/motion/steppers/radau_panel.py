@@ -42,15 +42,11 @@ WEIGHTS: Floats = MATRIX[-1].copy()
 
 
 class Oscillation(NamedTuple):
-    """Prescribed oscillation, with velocities Im(phasor exp(i angle)).
-
-    rotated: 1 where its speed alone moves bristles.
-    """
+    """Prescribed oscillation, with velocities Im(phasor exp(i angle))."""
 
     along: complex
     across: complex
     frequency: float
-    rotated: float
 
 
 class Place(NamedTuple):
@@ -104,8 +100,7 @@ def slip_in_the_plane(slip: Oscillation, place: Place, angle: float) -> complex:
 
 
 def _slip_on_the_line(slip: Oscillation, place: Place, angle: float, z: float) -> float:
-    v = slip_in_the_plane(slip, place, angle)
-    return math.sqrt(v.real * v.real + v.imag * v.imag) if slip.rotated > 0.0 else v.real
+    return slip_in_the_plane(slip, place, angle).real
 
 
 def _slip_in_the_plane(slip: Oscillation, place: Place, angle: float, z: complex) -> complex:

@@ -17,7 +17,7 @@ BEYOND_LIMIT = 1.5
 )
 def oddness(one: Given) -> None:
     """Reverse slip and deflections: friction and rates of deflections must change sign, nothing else."""
-    law = one.law(lambda law: getattr(law, "planar", "") != "rotated")
+    law = one.law()
     v = one.slip()
     back = -1.0 if has_direction(law) else 1.0
     for memory in (one.memory(law), memory_after_slip(law, v, BEYOND_LIMIT)):
@@ -72,7 +72,6 @@ def straight_planar_slide(one: Given) -> None:
     """Slide along x1 in the plane: friction and rates must equal those on the line, with zero across."""
     law = one.planar_law()
     v = one.slip()
-    v = abs(v) if getattr(law, "planar", "") == "rotated" else v
     memory = one.memory(law)
     scalars = isinstance(law, MemoryLaw) and not has_direction(law)
     across = memory if scalars else tuple(map(complex, memory))

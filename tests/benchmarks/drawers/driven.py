@@ -6,10 +6,10 @@ import random
 
 import numpy as np
 from campaign import Drawn
+from frictionlab.methods.shooting.saturated import saturates_in_the_plane
 
 from drawers import every_law
 from frictionlab.methods.shooting.decoupled import axes_apart
-from frictionlab.methods.shooting.saturated import saturates_in_the_plane
 from frictionlab.study.grid import law_in_scene
 
 

@@ -25,7 +25,7 @@ def draw(rng: random.Random) -> dict[str, Any]:
     )
     made = law(rng, family, _log(rng, 1e-4, 1e2) * speed / frequency, speed)
     if freedom != 1 and "presliding_length" in made and rng.random() < 0.2:
-        made["planar"] = rng.choice(("rotated", "per-axis"))
+        made["planar"] = "per-axis"
     one = {"family": family, "freedom": freedom, "scene": scene, "law": made}
     return one | {"method": _method(rng, family, freedom), "tolerance": rng.choice((1e-4, 1e-6, 1e-8))}
 

@@ -1,4 +1,4 @@
-"""Bristles by axis and bristles along the slip: beside LSODA on the equations of motion, which knows of neither."""
+"""Bristles by axis: beside LSODA on the equations of motion, which does not know of them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 from answered import with_columns
-from profiles import deep
 
 import frictionlab as fl
 from frictionlab.bench.peers.equations import OnBristles, one_period
@@ -15,7 +14,6 @@ from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.shooting.method import Shooting
 
 BY_AXIS = fl.Dahl(mu=0.4, presliding_length=0.3, planar="per-axis")
-ALONG_SLIP = fl.Dahl(mu=0.4, presliding_length=400.0, planar="rotated")
 
 
 def scene(belt_speed: float, across: float = 8.0) -> fl.Scene:
@@ -76,18 +74,6 @@ def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
     assert answers.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
 
 
-@deep("a kernel slow to compile")
-def test_a_deflection_along_the_slip_ends_at_its_limit_and_is_forgotten_slowly() -> None:
-    here, limit = scene(6.0), 400.0
-    row, orbit = solved(here, ALONG_SLIP)
-    end = followed(here, ALONG_SLIP, start_of(orbit, complex(limit, 0.0)))
-    assert end[:-1] == pytest.approx(start_of(orbit, complex(limit, 0.0)), abs=1e-6)
-    mean = -end[-1] * here.mass().frequency / (2.0 * math.pi)
-    assert abs(mean - row["mean_friction"]) <= row["error"] + 1e-9
-    lacking = followed(here, ALONG_SLIP, start_of(orbit, complex(limit - 1e-3, 0.0)))
-    assert (limit - lacking[4]) / 1e-3 == pytest.approx(row["floquet"], rel=1e-3)
-
-
 def test_corners_that_the_planar_map_does_not_locate_do_not_stop_an_answer() -> None:
     """Yield by axis that took the planar map minutes, and no answer."""
     across = fl.Transverse(
@@ -104,35 +90,3 @@ def test_corners_that_the_planar_map_does_not_locate_do_not_stop_an_answer() -> 
     row, _ = solved(here, law, 1e-6)
     assert row["error"] <= 1e-6
     assert abs(row["mean_friction"] - 0.056673515) <= 2.1e-6 + row["error"]  # march, 2.0e-6
-
-
-def test_a_slider_along_the_slip_holds_no_more_than_its_friction() -> None:
-    """The planar map also closed with its spring stretched further than it reaches, and gave 0.4333."""
-    across = fl.Transverse(
-        natural_frequency=0.310121, damping_ratio=0.0371532, load=fl.Load(amplitude=0.309817)
-    )
-    here = fl.Scene(
-        damping_ratio=0.104649,
-        normal_load=0.0434252,
-        belt_speed=0.152624,
-        drive=fl.Drive(amplitude=0.127950, frequency=1.277137, phase=178.874),
-        transverse=across,
-    )
-    law = fl.Jenkins(mu=0.826357, presliding_length=1.68817e-4, planar="rotated")
-    _row, orbit = solved(here, law, 1e-7)
-    assert np.abs(orbit.friction).max() <= 0.826357 * (1.0 + 1e-12)
-    smooth = fl.Dahl(mu=0.826357, presliding_length=1.68817e-4, planar="rotated")  # the same once it slides
-    state = start_of(orbit, complex(1.68817e-4, 0.0))
-    assert followed(here, smooth, state)[:-1] == pytest.approx(state, abs=1e-6)
-
-
-def test_on_a_belt_at_rest_no_start_tells_where_bristles_along_the_slip_hold() -> None:
-    here = scene(0.0, across=0.1)
-    here = here.model_copy(
-        update={"drive": fl.Drive(amplitude=0.2, frequency=1.3), "initial": fl.Initial(x=0.05)}
-    )
-    answers = with_columns(Shooting(), [here], ALONG_SLIP, 1e-6)
-    assert answers.status == ["not_unique"]
-    assert "the mass may rest anywhere in a range" in answers.reason[0]
-    assert "scene.initial" not in answers.reason[0]
-    assert 0.0 < answers.columns["mean_high"][0] == -answers.columns["mean_low"][0] < 0.4

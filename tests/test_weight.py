@@ -23,7 +23,7 @@ LIMITS = {
     "testing": 1492,
     "theory": 911,
     "values": 1374,
-    "tests": 29476,
+    "tests": 29510,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

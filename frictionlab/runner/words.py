@@ -38,7 +38,6 @@ TOLD: dict[str, tuple[str, str]] = {
     "between belt speeds (NUMBER) and": ("velocity", "m/s"),
     "between belt speeds .* and (NUMBER)": ("velocity", "m/s"),
     "; none at (NUMBER)": ("velocity", "m/s"),
-    "is closed at (NUMBER)": ("velocity", "m/s"),
 }
 """Where sentences have numbers with a dimension, the scale of these and their SI unit."""
 _PATTERNS = {re.compile(words.replace("NUMBER", _NUMBER)): scale for words, scale in TOLD.items()}

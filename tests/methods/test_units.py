@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from draws_of_every_kind import Keys, Numpy, law, log, scene_of_every_kind, undriven
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from profiles import DEEP
 
@@ -83,6 +83,7 @@ def turned_round(scene: Keys) -> Keys | None:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
+@example(seed=237)
 @settings(max_examples=300 if DEEP else 3)
 def test_units_phases_and_direction_never_change_an_answer(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -96,6 +97,14 @@ def test_units_phases_and_direction_never_change_an_answer(seed: int) -> None:
         moved, sign = other, -1.0
     here, there = solved(scene, told), solved(longer(moved, factor), longer(told, factor))
 
+    if {here.status, there.status} == {
+        "ok",
+        "not_unique",
+    }:  # the phase decides which of several motions a start reaches
+        one, other = (here, there) if here.status == "ok" else (there, here)
+        low, high = sorted(sign * end for end in (other.mean_low, other.mean_high))
+        assert low - one.error <= one.mean_friction <= high + one.error
+        return
     assert here.status == there.status
     if here.status == "ok":
         assert abs(here.mean_friction - sign * there.mean_friction) <= here.error + there.error

@@ -395,7 +395,7 @@ class SteadyStates:
 
     def _attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
-        return self.status[i] == "ok" and self.reached[i] > 0 and not self._known(i) > 1.0 + SURELY
+        return self.status[i] == "ok" and self.reached[i] > 0 and not self.multipliers[i] > 1.0 + SURELY
 
     def _may_hold(self, i: int) -> bool:
         """Whether the belt is at rest and a deflection may only follow the mass: it then keeps what it began with."""

@@ -230,6 +230,34 @@ def test_friction_that_begins_within_rounding_of_its_limit_reaches_it_once() -> 
         assert state.mean_friction == pytest.approx(0.05392415, abs=tolerance + 1e-8)  # brute force
 
 
+@deep("seconds of starts")
+def test_an_orbit_that_repels_is_no_answer_of_a_body_that_may_move_across_the_belt() -> None:
+    """Its largest multiplier is 3.1, and the multipliers across the belt, which are smaller, are not asked for."""
+    scene = fl.Scene(
+        damping_ratio=0.0866049399867431,
+        normal_load=0.8774330354297314,
+        belt_speed=-0.0030505382488509284,
+        transverse={"natural_frequency": 0.8613522280868648, "damping_ratio": 0.21910837297108604},
+        normal_load_variation={
+            "waveform": "sawtooth",
+            "phase": 12.429906663213956,
+            "amplitude": 0.41443009736162306,
+            "frequency": 3.7041712808142857,
+            "contact": "constant",
+        },
+    )
+    law = fl.ElastoPlastic(
+        mu_kinetic=0.13769413718254842,
+        breakaway_ratio=0.7031641756505305,
+        presliding_length=7.551923770312644e-06,
+        damping=4.513765307955565,
+    )
+
+    state = fl.steady_state(scene, law)
+
+    assert abs(state.mean_friction - -0.118131108) > 10.0 * state.error  # the mean of that orbit
+
+
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 5e-7, 1e-7])
 def test_the_layer_after_a_reversal_is_not_passed_in_one_step_that_seems_exact(tolerance: float) -> None:
     """Found at random: maps of two accuracies agreed to 3e-10, both 4e-8 off in the layer."""

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.call import PYTHON_AT_MOST, NotKept, compiling_nothing, seconds_by_python
 from frictionlab.laws.faults import BrokenPlugin
 from frictionlab.runner.chunks import Chunk, Cut, Task, chunk_size, cuts
 from frictionlab.runner.execute import OverLimit, solve_timed, under_way, within
@@ -135,6 +134,9 @@ class _Sample:
 
     def solve_more(self, seconds: float) -> None:
         """Solve the next piece, for so long at most."""
+        # brings numba: only where it is needed
+        from frictionlab.compile.call import NotKept, seconds_by_python
+
         chunk, before, start = self._next_piece(), seconds_by_python(), time.perf_counter()
         try:
             took = within(seconds, _time, chunk)
@@ -164,6 +166,8 @@ class _Sample:
 
     def price(self, usual: float) -> Price:
         """What all points take; usual: seconds a point of other laws and methods, where none of these was solved."""
+        from frictionlab.compile.call import PYTHON_AT_MOST
+
         known = self._pieces or self._to_compile
         seconds = self.seconds if known else usual * self.points
         if self._by_python:  # until that has taken too long
@@ -181,6 +185,8 @@ def _unsure(sample: _Sample) -> float:
 
 def _time(chunk: Chunk) -> float:
     """Seconds that solving takes, compiling and reading of machine code left out. Raises NotKept, BrokenPlugin."""
+    from frictionlab.compile.call import compiling_nothing
+
     with compiling_nothing():
         return solve_timed(chunk).seconds
 

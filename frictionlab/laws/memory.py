@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar, Literal
-
-from pydantic import field_validator
+from typing import Annotated, Any, ClassVar, Literal
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.values.quantities import gone
 
 VECTORIAL, PER_AXIS = 0.0, 1.0
+NOT_ROTATED = "rotated bristles, which remember no direction, are gone: use vectorial or per-axis"
 
 
 class BristleLaw(FrictionLaw, ABC):
@@ -46,16 +46,7 @@ class BristleLaw(FrictionLaw, ABC):
 
     memory_kind: ClassVar[Literal["bristle"]] = "bristle"
 
-    planar: Literal["vectorial", "per-axis"] = "vectorial"
-
-    @field_validator("planar", mode="before")
-    @classmethod
-    def _not_rotated(cls, value: Any) -> Any:
-        if value == "rotated":
-            raise ValueError(
-                "rotated bristles, which remember no direction, are gone: use vectorial or per-axis"
-            )
-        return value
+    planar: Annotated[Literal["vectorial", "per-axis"], gone("rotated", NOT_ROTATED)] = "vectorial"
 
     @abstractmethod
     def rate(self, v: Any, z: Any) -> Any:

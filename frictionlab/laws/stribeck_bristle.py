@@ -98,7 +98,7 @@ class StribeckBristle(DampedLaw, ABC):
         It is damping^2 speed/mu_kinetic <= 4 (damping + viscosity).
         """
         lost = self.bristle_damping + self.viscosity
-        return super().damps_across(speed) and self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost
+        return self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost
 
     def rate_independent(self) -> bool:
         """Check whether g is the same at every speed and there is neither damping nor viscosity."""

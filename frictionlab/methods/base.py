@@ -7,11 +7,10 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import field_validator
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.motion.orbit.record import End, Orbit, Orbits
@@ -20,7 +19,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.units import Units, measured
 from frictionlab.theory.linear import velocity_scale
-from frictionlab.values.quantities import Floats, Record
+from frictionlab.values.quantities import Floats, Record, gone
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
 PROVED, TESTED, NOT_UNIQUE = "proved", "tested", "no"
@@ -249,22 +248,16 @@ REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})
 """The names of those that solve a simpler problem, known without loading them."""
 
 
+NO_BOUND = "bounds are gone: the error of a reduced model is its distance to the full answer"
+
+
 class ReducedModel(Method):
     """A method that solves a simpler problem than the scene states.
 
     error: what that leaves out is always told by the ``distance`` to the full answer.
     """
 
-    error: Literal["distance"] = "distance"
-
-    @field_validator("error", mode="before")
-    @classmethod
-    def _is_the_distance(cls, told: Any) -> Any:
-        if told == "bound":
-            raise ValueError(
-                "bounds are gone: the error of a reduced model is its distance to the full answer"
-            )
-        return told
+    error: Annotated[Literal["distance"], gone("bound", NO_BOUND)] = "distance"
 
     @abstractmethod
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:

@@ -86,13 +86,8 @@ def _is_followed(curve: StudyCurve) -> bool:
 
 
 def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
-    found = []
-    if curve.given_law.memory_kind == "none" and set(OF_REST) <= set(rows.columns):
-        found += _onsets_of_rest(curve, rows, tolerance, most)
-    return found
-
-
-def _onsets_of_rest(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
+    if curve.given_law.memory_kind != "none" or not set(OF_REST) <= set(rows.columns):
+        return []
     from frictionlab.curves.motions import CurveMotions
     from frictionlab.curves.onsets import KnownRow, onsets_along  # brings numba: only where it is needed
 

@@ -232,7 +232,7 @@ class StudyRun:
             None if self.folder is None else self.folder.path,
             self._computed,
             gathered.curves,
-            lambda: self._onsets(read),
+            lambda: onset_table(self.study, read),
             lambda: boundary_table(
                 study, gathered.curves.iloc[:0] if stopped else gathered.curves, self._laws
             ),
@@ -251,15 +251,11 @@ class StudyRun:
             self.folder.path,
             self._computed,
             curves,
-            lambda: self._onsets(read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
+            lambda: onset_table(self.study, read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
             lambda: boundary_table(study, curves, self._laws),
             shown,
             counts,
         )
-
-    def _onsets(self, table: pd.DataFrame) -> pd.DataFrame:
-        """The onsets of the curves."""
-        return onset_table(self.study, table)
 
     def _judged(self, done: Run, stopped: bool = False) -> Run:
         """The run with its verdicts, judged on the columns that they speak of."""

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     ValidationError,
@@ -180,6 +181,17 @@ document(
     frictionlab.values.notes.WrongValues: Rough: mu: must be > 0, got 0
     """,
 )
+
+
+def gone(value: str, why: str) -> BeforeValidator:
+    """Make the mark of a field that no longer takes a value: it is refused by this sentence."""
+
+    def refuse(given: Any) -> Any:
+        if given == value:
+            raise ValueError(why)
+        return given
+
+    return BeforeValidator(refuse)
 
 
 def at_least_one(name: str, value: object) -> int:

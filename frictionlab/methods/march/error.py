@@ -233,7 +233,7 @@ def _next_run(
         steps=steps,
         refined=steps // runs[0].pace.steps if runs else 1,
         theta=plan.theta,
-        enough=0.25 * share * march.unit,
+        enough=0.25 * share * march.mass.normal_load,
         most=plan.periods,
         work=max(work, FEWEST_LAPS * steps),
         rate=before.rate if before is not None and before.verdict == CLOSED else 0.0,
@@ -372,17 +372,16 @@ def _by_widths(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """The mean of this width; twice, half and a quarter of it tell the bias, a run of looser steps their error."""
     load = march.mass.normal_load * march.law.sliding_friction(plan.width)
     accuracy = max(min(1e-5 * tolerance * load, 1e-3 * plan.width, 1e-6 * load), 1e-13 * load)
-    enough = accuracy * march.unit / march.mass.normal_load
     pace = Resolution(
         width=plan.width,
         smoothing=plan.smoothing,
         accuracy=accuracy,
-        enough=1e3 * enough,
+        enough=1e3 * accuracy,
         most=plan.periods,
         work=MOST_ADAPTIVE,
     )
     paces = {
-        "loose": replace(pace, accuracy=32.0 * accuracy, enough=32e3 * enough),
+        "loose": replace(pace, accuracy=32.0 * accuracy, enough=32e3 * accuracy),
         "wide": replace(pace, width=2.0 * plan.width),
         "narrow": replace(pace, width=0.5 * plan.width),
         "narrowest": replace(pace, width=0.25 * plan.width),

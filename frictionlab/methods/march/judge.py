@@ -83,7 +83,7 @@ class OtherStarts:
         """Where every start led, the first one's first, equal ones the same object; why one led nowhere, or ''."""
         march = self.march
         known = [self.first]
-        enough = min(self.like.pace.enough, SHUT * march.unit)
+        enough = min(self.like.pace.enough, SHUT * march.mass.normal_load)
         pace = replace(self.like.pace, rate=0.0, enough=enough, work=max(self.like.pace.work, WORK))
         for start in starts(march.scene, march.law)[1:]:
             place = march.place(start)

@@ -114,11 +114,6 @@ class MarchRun:
         self.seconds = 0.0
 
     @property
-    def unit(self) -> float:
-        """The distance of two states, in the norm of energy, that makes friction differ by its coefficient."""
-        return self.mass.normal_load
-
-    @property
     def at_rest(self) -> float:
         """The most that slip must overcome to begin, over the mean normal load; with memory, of the slowest slip."""
         return self.heaviest * friction_at_rest(self.law)
@@ -317,13 +312,13 @@ class MarchRun:
             return 1e-12 + self._from_sliding(march)
         if march.progress.verdict == STALLED:
             led = self._apart(march, len(march.laps.impulse), len(march.laps.impulse) - self.window)
-            return spread + 2.0 * led / self.unit
+            return spread + 2.0 * led / self.mass.normal_load
         lasting = self.mass.relaxing.lasting if self.mass.relaxing else 0.0
         ends = (1.0 + self.mass.damping + lasting * (1.0 + self._slowest)) * drift
         doubt = (
             2.0 if self.law.memory_kind == "none" else 4.0
         )  # with memory, orbits may part before they meet
-        left = doubt * float(march.progress.distance + ends / self.lap) / self.unit
+        left = doubt * float(march.progress.distance + ends / self.lap) / self.mass.normal_load
         return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
 
     def _only_slides(self, march: MarchHistory) -> bool:

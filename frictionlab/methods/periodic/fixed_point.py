@@ -122,7 +122,7 @@ def stated_error(changed: float, left_open: float, steps: float) -> float:
 
 @inner
 def rounding_of(normal_load: float, z: Any, belt_speed: float) -> float:
-    """What rounding makes of a state: no residual is asked to be below that.
+    """Return what rounding makes of a state: no residual is asked to be below that.
 
     Rounding of slip moves the instants at which friction turns, and that matters in proportion to friction.
     """

@@ -118,7 +118,7 @@ class Transient(NamedTuple):
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""
 SHIFT = 1e-5
-"""Of the size of a state: the largest offset of difference quotients."""
+"""Largest offset of difference quotients, over the size of a state."""
 FINEST = 1e-15
 """No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
@@ -340,7 +340,7 @@ class PeriodicProblem:
         return np.asarray(curve.states)
 
     def derivative(self, belt_speed: float, state: Floats) -> Floats:
-        """The derivative of that map at a state [size, size], by central differences of fine maps.
+        """Return the derivative of that map at a state [size, size], by central differences of fine maps.
 
         Shifts are below the way the belt moves in a period, on which the pattern of events hangs.
         """

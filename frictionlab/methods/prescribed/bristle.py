@@ -114,7 +114,7 @@ ROUNDING = 2.0**-50
 
 
 class BristlePoint:
-    """One scene of a prescribed sine, or of an ellipse, and the answer."""
+    """Scene of a prescribed sine, or of an ellipse, and the answer."""
 
     def __init__(self, scene: Scene, law: BristleLaw, tolerance: float) -> None:
         self.scene, self.motion, self.belt_speed = scene, scene.motion(), scene.belt_speed

@@ -1,4 +1,4 @@
-"""The closed loop of a bristle law by collocation: along a line, and of vectors in the plane.
+"""Closed loops of bristle laws by collocation, along a line and in the plane.
 
 Licence (48 scenes at 1e-8, softness 1e-3 to 30): against the period map of a memory of any size as fast along a line,
 0.7 to 2.2 times faster in the plane in the median of a law. That map leaves open what this answers: contacts that the

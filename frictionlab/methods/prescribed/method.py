@@ -128,7 +128,7 @@ def _told_uniqueness(row: Point) -> str:
 
 
 def _ends(row: Point) -> list[End]:
-    """Where starts end, of a memory that keeps what it began with."""
+    """Return where starts end whose memory keeps what it began with."""
     return row.ends() if isinstance(row, MemoryPoint) else []
 
 

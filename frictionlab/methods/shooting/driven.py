@@ -372,9 +372,9 @@ class SteadyStates:
         return Multipliers(found, error, [""] * len(found))
 
     def _by_central_quotients(self) -> Multipliers:
-        """Of a law with memory, whose monodromies are one-sided quotients: anew, by fine maps on both sides.
+        """Differentiate anew, by fine maps on both sides, the map of a law with memory: it had one-sided quotients.
 
-        What changes by that is the error. Where the map has a kink within the shift no number is the multiplier.
+        The change is the error. Where the map has a kink within the shift no number is the multiplier.
         """
         n = len(self.scenes)
         modulus, error, reason = self.multipliers.copy(), np.full(n, np.nan), [""] * n
@@ -398,13 +398,13 @@ class SteadyStates:
         return self.status[i] == "ok" and self.reached[i] > 0 and not self.multipliers[i] > 1.0 + SURELY
 
     def _may_hold(self, i: int) -> bool:
-        """Whether the belt is at rest and a deflection may only follow the mass: it then keeps what it began with."""
+        """Check that the belt is at rest and a deflection may only follow the mass, and keep what it began with."""
         law = self.problem.law
         follows = law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
         return follows and bool(self.belt_speeds[i] == 0.0)
 
     def _ends(self, i: int) -> list[End]:
-        """Of a continuum."""
+        """Make the orbits of the states found at the ends of a range of means."""
         scene, states = self.scenes[i], self.continua.get(i, [])
         made = [self.problem.orbits([scene], [state]).one(0) for state in states]
         return [End(one, self.problem.goal.tolerance) for one in made if one is not None]

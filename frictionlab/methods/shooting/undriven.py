@@ -121,10 +121,12 @@ class Undriven:
     @property
     def _accuracy(self) -> float:
         """Of maps that are to follow the motion no worse than the mean is asked for."""
-        of_belt = OF_BELT_SPEED * abs(self._path.speed) / self._path.mass.normal_load or FOLLOWED
-        if self.law.memory_kind == "scalars":  # steps follow slow slip by its logarithm
-            of_belt = FOLLOWED
-        return max(min(0.1 * self.tolerance, FOLLOWED, of_belt), LEAST)
+        asked, of_belt = 0.1 * self.tolerance, abs(self._path.speed) / self._path.mass.normal_load
+        if (
+            self.law.memory_kind != "scalars" and of_belt > 0.0
+        ):  # by scalars, slow slip has steps in its logarithm
+            asked = min(asked, OF_BELT_SPEED * of_belt)
+        return max(min(asked, FOLLOWED), LEAST)
 
     @property
     def _conserves(self) -> bool:
@@ -205,7 +207,7 @@ class Undriven:
     # --- cycles ---
 
     def _reached_cycle(self, section: Passages, way: Way) -> Cycle | None:
-        """The cycle that the motion surely nears; one more is known where it is new."""
+        """Find the cycle that the motion surely nears; one more is known where it is new."""
         passages = way.passages
         for cycle in way.cycles:
             if cycle.neared(passages):
@@ -226,7 +228,7 @@ class Undriven:
         return None
 
     def _close(self, section: Passages, way: Way, state: Floats, passages: int = 1) -> Cycle | None:
-        """The cycle beside a state, if it is new; none where closing has taken more than following."""
+        """Close the cycle beside a state, if it is new; none where closing has taken more than following."""
         before = self.effort.work
         if way.closing > max(0.5 * before, MOST_CLOSING):
             return None
@@ -238,7 +240,7 @@ class Undriven:
         return found
 
     def _led(self, section: Passages, way: Way) -> tuple[Cycle | None, Floats]:
-        """The cycle of one passage to which leaps lead, or none, and the state that they reach."""
+        """Lead a motion by leaps: the cycle of one passage where they end, or none, and the state that they reach."""
         orbits: dict[int, KnownOrbit] = {}
 
         def known() -> list[KnownOrbit]:
@@ -290,8 +292,7 @@ class Undriven:
 
     def _again(self, section: Passages, state: Floats, count: int) -> list[Passage]:
         """The next passages of a motion by finer maps."""
-        finer, found = Passages(self._path, section.accuracy / FINER), list[Passage]()
-        finer.level = section.level
+        finer, found = replace(section, accuracy=section.accuracy / FINER), list[Passage]()
         while len(found) < count and isinstance(end := finer.next(state), Passage):
             found.append(end)
             state = end.state

@@ -22,6 +22,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, stated_error
 from frictionlab.methods.periodic.period_map import start_of, unit_of_scalars, whole_size_of
+from frictionlab.methods.periodic.problem import largest_modulus
 from frictionlab.methods.periodic.setting import Maps, Setting, maps_of, recorded_map
 from frictionlab.motion.equation import (
     START,
@@ -319,17 +320,19 @@ class Settled(NamedTuple):
 class Passages:
     """Map of a motion from one passage of the level to the next.
 
-    level: position along the belt; that of steady sliding at first. conserves: whether nothing but friction other
-    than that of sliding takes energy.
+    conserves: whether nothing but friction other than that of sliding takes energy. level: position along the belt;
+    that of steady sliding at first. usual: turns that a passage takes.
     """
 
     path: UndrivenPath
     accuracy: float
     conserves: bool = False
+    level: float = math.nan
+    usual: float = FIRST_SPAN
 
     def __post_init__(self) -> None:
-        self.level = self.path.side * float(self.path.sliding[0]) / self._root
-        self._guess = FIRST_SPAN
+        if math.isnan(self.level):
+            self.level = self.path.side * float(self.path.sliding[0]) / self._root
 
     @property
     def _root(self) -> float:
@@ -364,7 +367,6 @@ class Passages:
     def around(self, state: Floats, passages: int, accuracy: float) -> Passage | None:
         """Return so many passages as one, by maps of an accuracy; None where there are fewer. The level stays."""
         map_, found = replace(self, accuracy=accuracy), list[Passage]()
-        map_.level, map_._guess = self.level, self._guess
         while len(found) < passages:
             one = map_.next(found[-1].state if found else state)
             if isinstance(one, Settled) or map_.level != self.level:
@@ -375,7 +377,7 @@ class Passages:
 
     def next(self, state: Floats) -> Passage | Settled:
         """Follow a motion to its next passage; where it swings beside the level, move that. Raises NotFound."""
-        path, turns, impulse, length = self.path, 0.0, 0.0, BEFORE * self._guess
+        path, turns, impulse, length = self.path, 0.0, 0.0, BEFORE * self.usual
         low, high, fastest, spread, rises = math.inf, -math.inf, 0.0, 0.0, False
         longest, swings, least, most = math.inf, 0, math.inf, -math.inf
         while turns < LONGEST:
@@ -399,7 +401,7 @@ class Passages:
                 end, late = self._at_level(before.end if before else state, tau[found + 1] - tau[found])
                 turns += tau[found] + late
                 impulse += end.impulse + (before.impulse if before else 0.0)
-                self._guess = turns
+                self.usual = turns
                 if self._stays(state, end.end):
                     return Settled(end.end, False)
                 return Passage(end.end, turns, impulse, float(low), float(high), float(fastest))
@@ -409,13 +411,13 @@ class Passages:
             if tops.size or swings:  # what comes behind the first largest deflection
                 part, swings = x[tops[0] :] if not swings else x, swings + tops.size
                 least, most = min(least, part.min()), max(most, part.max())
-            if swings >= SWINGS_BESIDE and turns > PATIENCE * self._guess:
+            if swings >= SWINGS_BESIDE and turns > PATIENCE * self.usual:
                 self.level = 0.5 * float(least + most)
             rises = rises or bool((v > 0.0).any())
             state, turns, impulse = span.end, turns + length, impulse + span.impulse
             # as long as the last passage took, and a little: then ever longer, while spans take few steps
-            if turns <= self._guess:
-                length = min(longest, (1.05 - BEFORE) * self._guess)
+            if turns <= self.usual:
+                length = min(longest, (1.05 - BEFORE) * self.usual)
             elif span.steps < FEW_STEPS:
                 length = min(longest, 2.0 * length)
         raise NotFound(f"no steady state within {turns:.0e} periods: {path.whereabouts(state)}")
@@ -522,7 +524,7 @@ class Cycle(NamedTuple):
     @property
     def multiplier(self) -> float:
         """The largest modulus of the multipliers, without the trivial one."""
-        return radius(self.matrix)
+        return float(largest_modulus(self.matrix[None])[0])
 
     @property
     def orbit(self) -> KnownOrbit:
@@ -545,11 +547,6 @@ class Cycle(NamedTuple):
         return self.has(last) or (
             len(passages) > self.passages and nears(self.orbit, passages[-1 - self.passages].state, last)
         )
-
-
-def radius(matrix: Floats) -> float:
-    """Return the largest modulus of the eigenvalues."""
-    return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
 def close_cycle(section: Passages, state: Floats, passages: int, tolerance: float) -> Cycle | None:

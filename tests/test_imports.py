@@ -56,8 +56,8 @@ INSIDE_METHODS = {
         "prescribed": "base periodic under_way words",
         "shooting": "base periodic prescribed under_way words",
         "exact": "base prescribed shooting words",
-        "march": "base periodic shooting under_way",
         "reduced": "base exact prescribed shooting words",
+        "march": "base periodic reduced shooting under_way",
         "auto": "base exact relay_locus shooting words",
     }.items()
 }

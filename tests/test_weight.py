@@ -7,27 +7,27 @@ from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
     "analysis": 2538,
-    "bench": 2981,
+    "bench": 2979,
     "beside the rooms": 87,
     "charts": 1859,
     "cli": 992,
     "compile": 1449,
     "curves": 841,
     "laws": 686,
-    "methods": 11463,
-    "motion": 4883,
+    "methods": 11025,
+    "motion": 4851,
     "report": 1772,
     "runner": 4301,
     "scene": 1688,
     "study": 2791,
-    "testing": 1492,
-    "theory": 911,
+    "testing": 1491,
+    "theory": 918,
     "values": 1380,
-    "tests": 29508,
+    "tests": 29336,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 351
+MOST_FILES = 349
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

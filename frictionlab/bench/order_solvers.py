@@ -209,7 +209,6 @@ _ALL_SOLVERS: tuple[OrderSolver, ...] = (
     FixedSteps("rk4", "rk4", ("none", "bristle")),
     FixedSteps("moreau_0.5", "moreau", ("none",), 0.5),
     FixedSteps("moreau_1", "moreau", ("none",), 1.0),
-    FixedSteps("exponential", "exponential", ("bristle",)),
     FixedSteps("sdirk2", "sdirk2", ("bristle",)),
     Widths(),
     Tolerances("shooting", Shooting()),

@@ -41,7 +41,7 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-from frictionlab.methods.march.error import Plan, march_mean
+from frictionlab.methods.march.judge import Plan, Runs
 from frictionlab.methods.march.laps import MarchState
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.run import MarchRun
@@ -194,8 +194,8 @@ class MappedSmoothing(MappedSolver):
         """At a tolerance; the step is the mean one of the run that was asked for."""
         known = known_state(problem.name, rate)
         march = MarchRun(known.scene, known.law, "smoothed")
-        plan = Plan("smoothed", 0.5, 8, None, width_at(rate), "tanh", 100_000)
-        run = march_mean(march, plan, at).runs[-1]
+        plan = Plan("smoothed", 0.5, None, width_at(rate), "tanh", 100_000)
+        run = Runs(march, plan, at, known.mean).asked
         step = run.laps * march.lap / run.steps
         method = March(stepper="smoothed", width=width_at(rate))
         return _answered(method, known, at, MapPoint(at, rate, step, "", "", 0.0, 0.0))
@@ -215,7 +215,6 @@ _ALL: tuple[MappedSolver, ...] = (
         for theta in (0.25, 0.5, 0.75, 1.0)
     ),
     MappedSmoothing("smoothed", ("smoothing",), CREPT),
-    MappedStepper("exponential", ("bristle",), MARCHED, "exponential"),
     MappedStepper("sdirk2", ("bristle",), MARCHED, "sdirk2"),
 )
 MAPPED_STEPPERS = {stepper.name: stepper for stepper in _ALL}

@@ -4,9 +4,9 @@ First come rate and friction of a law with memory, then the advance of one brist
 projection onto the yield surface, then a contact of constant stiffness under a changing normal load.
 
 Last comes smoothed dry friction, in which a steep slope replaces the jump at rest, for steppers that need
-smooth rates: friction = phi(|v|/width) * sliding_vector(v), with phi(u) = tanh u, u/sqrt(1 + u^2) or (2/pi)
-arctan u. The mass then creeps where it should stick, which biases the mean. The bias falls in proportion to
-the width, or to its square root where slip nearly vanishes without reversing. With arctan, which has a long
+smooth rates: friction = phi(|v|/width) * sliding_vector(v), with phi(u) = tanh u or (2/pi) arctan u. The
+mass then creeps where it should stick, which biases the mean. The bias falls in proportion to the width, or to
+its square root where slip nearly vanishes without reversing. With arctan, which has a long
 tail, the mean is biased even where slip never comes near to rest. The width belongs to the method: no law has
 one.
 """
@@ -154,13 +154,7 @@ def resistance_at_share(law: Any, w: Any, z: Any, n: float) -> Any:
     return rate, friction_of(law, (bent,), (rate / n,), w)
 
 
-@inner
-def advance_at_share(law: Any, h: float, w: Any, z: Any, n: float) -> Any:
-    """Return the deflection of such a bristle after slip velocity w for the time h."""
-    return n * advance_bristle(law, h / n, w, project_to_yield(law, z / n))
-
-
-TANH, SQUARE_ROOT, ARCTAN = 0.0, 1.0, 2.0
+TANH, ARCTAN = 0.0, 1.0
 
 
 @inner
@@ -168,8 +162,6 @@ def share(shape: float, u: float) -> float:
     """Return phi(u), the share of the sliding friction that acts at a speed of u widths, u >= 0."""
     if shape == TANH:
         return math.tanh(u)
-    if shape == SQUARE_ROOT:
-        return u / math.sqrt(1.0 + u * u)
     return 2.0 / math.pi * math.atan(u)
 
 

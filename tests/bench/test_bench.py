@@ -304,7 +304,7 @@ def test_an_interrupted_bench_keeps_the_curves_that_are_done(
 
 @deep("seconds of a bench")
 def test_a_list_may_have_sections_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    stability = "{steppers: [exponential, rk4], problems: [bristle], grid: 3}"
+    stability = "{steppers: [sdirk2, rk4], problems: [bristle], grid: 3}"
     orders = "{motions: [smooth], steppers: [moreau_1]}"
     Path("list.yaml").write_text(f"schema: 1\norders: {orders}\nstability: {stability}\n")
 
@@ -340,17 +340,12 @@ def test_a_wrong_request_of_a_section_is_told(section: str, told: str) -> None:
 
 @deep("more kernels to compile")
 def test_a_section_is_chosen_by_name_beside_curves(capsys: pytest.CaptureFixture[str]) -> None:
-    Path("list.yaml").write_text(
-        f"{LIST}stability: {{steppers: [exponential], problems: [bristle], grid: 2}}\n"
-    )
+    Path("list.yaml").write_text(f"{LIST}stability: {{steppers: [sdirk2], problems: [bristle], grid: 2}}\n")
 
-    assert cli.main(["bench", "list.yaml", "--only", "stability_exponential", "-o", "out"]) == 0
-    assert capsys.readouterr().out.startswith("stability_exponential, bristle: 4 points")
+    assert cli.main(["bench", "list.yaml", "--only", "stability_sdirk2", "-o", "out"]) == 0
+    assert capsys.readouterr().out.startswith("stability_sdirk2, bristle: 4 points")
     assert cli.main(["bench", "list.yaml", "--only", "three"]) == 2
-    assert (
-        "no curve or section 'three' in the list; there are A, stability_exponential"
-        in capsys.readouterr().err
-    )
+    assert "no curve or section 'three' in the list; there are A, stability_sdirk2" in capsys.readouterr().err
 
 
 MISTAKES = [

@@ -62,7 +62,6 @@ CASES: dict[str, tuple[Any, Any, dict[str, Any]]] = {
     "rk4": (March(stepper="rk4", steps=100), COULOMB, {**STICKS, "belt_speed": 2.9}),
     "smoothed": (March(stepper="smoothed", width=0.3), COULOMB, {**STICKS, "belt_speed": 6.0}),
     "rk4 of a bristle": (March(stepper="rk4", steps=100), DAHL, STICKS),
-    "exponential": (March(stepper="exponential", steps=100), DAHL, STICKS),
     "sdirk2": (March(stepper="sdirk2", steps=50), DAHL, STICKS),
     "rk4 of elements": (March(stepper="rk4", steps=800), ELEMENTS, STICKS),
 }

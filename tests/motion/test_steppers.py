@@ -67,7 +67,7 @@ def settings_of(push: Push, steps: int, **changes: Any) -> MarchSettings:
     """Once from tau = 0 to the end in equal steps."""
     values = {
         "belt_speed": push.belt_speed, "driven": True, "steps": steps, "span": END, "first": END / steps,
-        "slack": 0.5, "reach": END / steps, "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0, "near": 0.0,
+        "slack": 0.5, "reach": END / steps, "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0,
         "work": 10**9, "window": 50, "room": 0,
     }  # fmt: skip
     return MarchSettings(**(values | changes))
@@ -205,7 +205,6 @@ def share_of(shape, u):
     ("shape", "slope", "tail"),
     [
         (smoothing.TANH, 1.0, lambda u: 2.0 * math.exp(-2.0 * u)),
-        (smoothing.SQUARE_ROOT, 1.0, lambda u: 0.5 / u**2),
         (smoothing.ARCTAN, 2.0 / math.pi, lambda u: 2.0 / math.pi / u),
     ],
 )

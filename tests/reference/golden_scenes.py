@@ -187,14 +187,6 @@ IMPLICIT = {"kind": "march", "stepper": "moreau", "theta": 1.0, "steps": 200, "l
 RK4 = {"kind": "march", "stepper": "rk4", "steps": 200, "label": "rk4"}
 TANH = {"kind": "march", "stepper": "smoothed", "width": 1.0, "label": "tanh"}
 ARCTAN = {"kind": "march", "stepper": "smoothed", "width": 1.0, "smoothing": "arctan", "label": "arctan"}
-ROOT = {
-    "kind": "march",
-    "stepper": "smoothed",
-    "width": 1.0,
-    "smoothing": "square_root",
-    "label": "square root",
-}
-EXPONENTIAL = {"kind": "march", "steps": 256, "label": "exponential"}
 SDIRK2 = {"kind": "march", "stepper": "sdirk2", "steps": 256, "label": "sdirk2"}
 BRISTLE_RK4 = {"kind": "march", "stepper": "rk4", "steps": 512, "label": "rk4"}
 EVERY = ["auto", "exact", "shooting", "mdsm", "harmonic_balance"]
@@ -247,7 +239,7 @@ def _line() -> Iterator[Group]:
                  tolerance=1e-10)  # fmt: skip
     yield _group("march of its own accord", W1, [COULOMB], [{"kind": "march", "label": "march"}], _speeds(2, 40),
                  tolerance=1e-3)  # fmt: skip
-    yield _group("march smoothed", W1, [COULOMB], [TANH, ARCTAN, ROOT, IMPLICIT], _speeds(10), tolerance=1e-2)
+    yield _group("march smoothed", W1, [COULOMB], [TANH, ARCTAN, IMPLICIT], _speeds(10), tolerance=1e-2)
     yield _group("march, few periods", {**W1, "damping_ratio": 0.001}, [COULOMB],
                  [{"kind": "march", "steps": 50, "periods": 5, "label": "few periods"}], _speeds(45))  # fmt: skip
     yield _group(
@@ -284,7 +276,7 @@ def _undriven() -> Iterator[Group]:
                  2.0, "damping_ratio": 0.1}, "initial": {"x2": 1.0}}, [COULOMB], ["auto", MOREAU],
                  _speeds(0.2))  # fmt: skip
     yield _group("undriven on bristles", {**BLOCK, "damping_ratio": 0.1}, [DAHL, LUGRE, DUPONT], ["auto",
-                 EXPONENTIAL], _speeds(0.2), tolerance=1e-3)  # fmt: skip
+                 BRISTLE_RK4], _speeds(0.2), tolerance=1e-3)  # fmt: skip
 
 
 def _plane() -> Iterator[Group]:
@@ -318,9 +310,9 @@ def _bristles() -> Iterator[Group]:
     yield _group("W1 on others, one harmonic", W1, [LUGRE, DUPONT], ["harmonic_balance"], _speeds(20),
                  tolerance=1e-6)  # fmt: skip
     yield _group("W1 on Dahl's exponents", W1, DAHLS[1:4], ["auto"], _speeds(20), tolerance=1e-6)
-    yield _group("W1 on bristles, marched", W1, [DAHL, LUGRE, DUPONT], [EXPONENTIAL, SDIRK2, BRISTLE_RK4],
+    yield _group("W1 on bristles, marched", W1, [DAHL, LUGRE, DUPONT], [SDIRK2, BRISTLE_RK4],
                  _speeds(20), tolerance=1e-3, deep=True)  # fmt: skip
-    yield _group("W1 on Jenkins's, marched", W1, [JENKINS], [EXPONENTIAL, SDIRK2, BRISTLE_RK4, MOREAU],
+    yield _group("W1 on Jenkins's, marched", W1, [JENKINS], [SDIRK2, BRISTLE_RK4, MOREAU],
                  _speeds(20), tolerance=1e-3)  # fmt: skip
     yield _group("bristles too stiff for a stepper", W1, [{**DAHL, "presliding_length": 1e-6}], [BRISTLE_RK4],
                  _speeds(20), tolerance=1e-3)  # fmt: skip
@@ -334,7 +326,7 @@ def _bristles() -> Iterator[Group]:
     yield _group("the plane by axis, held", {**PLANE, "transverse": {**PLANE["transverse"], "load":
                  {"amplitude": 0.5}}}, [{**JENKINS, "presliding_length": 2.0, "planar": "per-axis"}], ["auto"],
                  _speeds(2), tolerance=1e-6)  # fmt: skip
-    yield _group("no vector form", PLANE, [DAHLS[3]], ["auto", EXPONENTIAL], _speeds(4))
+    yield _group("no vector form", PLANE, [DAHLS[3]], ["auto", BRISTLE_RK4], _speeds(4))
     yield _group("no load across on Dahl's", NO_LOAD_ACROSS, [DAHL], ["auto"], _speeds(8), tolerance=1e-6)
     yield _group("the plane on others", W3, [DAHL, LUGRE, FALLING, JENKINS], ["auto"], _speeds(5, 30),
                  tolerance=1e-5, deep=True)  # fmt: skip

@@ -22,8 +22,6 @@ from frictionlab.compile.dispatch import (
 from frictionlab.compile.stack import count_of, room
 from frictionlab.motion import contact as smoothing
 from frictionlab.motion.contact import (
-    advance_at_share,
-    advance_bristle,
     friction_of,
     project_to_yield,
     rate_of,
@@ -46,14 +44,12 @@ from frictionlab.motion.equation import (
 from frictionlab.motion.maps.memory_state import pulled
 from frictionlab.motion.orbit.recorder import panel_writer
 from frictionlab.motion.relaxing import elements_of, with_force
-from frictionlab.motion.steppers import dop853, exponential, rk4
-from frictionlab.motion.steppers.exponential import exponential_step
+from frictionlab.motion.steppers import dop853, rk4
 from frictionlab.motion.steppers.moreau import moreau_step
 from frictionlab.motion.steppers.rk4 import rk4_step
 from frictionlab.motion.steppers.sdirk2 import sdirk2_step
 from frictionlab.motion.steppers.step import (
     LAST,
-    MIDDLE,
     StepEnd,
     StepStart,
     belt_at,
@@ -84,19 +80,13 @@ class Smoothed(NamedTuple):
     accuracy: float
 
 
-class Exponential(NamedTuple):
-    """decay: largest stable step times frequency of a mass held by its bristles."""
-
-    decay: float = exponential.DECAY
-
-
 class Sdirk2(NamedTuple):
     """decay: stable for any step."""
 
     decay: float = math.inf
 
 
-Stepper = Moreau | Rk4 | Smoothed | Exponential | Sdirk2
+Stepper = Moreau | Rk4 | Smoothed | Sdirk2
 
 
 class MarchProblem(NamedTuple):
@@ -139,13 +129,6 @@ bristle_resistance = by_contact(
     lambda body, law, w, z, pressed: resistance_at_share(law, w, z, _share(body, pressed)),
 )
 """bristle_resistance(body, law, w, z, pressed): rate of one bristle, and friction coefficient."""
-
-
-bristle_advance = by_contact(
-    lambda body, law, h, w, z, pressed: advance_bristle(law, h, w, z),
-    lambda body, law, h, w, z, pressed: advance_at_share(law, h, w, z, _share(body, pressed)),
-)
-"""bristle_advance(body, law, h, w, z, pressed): the deflection after slip w that lasts h, under a normal load."""
 
 
 def _yields_per_load(body: Any, law: Any, z: Any, pressed: float) -> Any:
@@ -249,22 +232,6 @@ def _rates_with_a_bristle(problem: MarchProblem, tau: float, x: Any, v: Any, z: 
     return acceleration(body, now, x, v, mu), in_shares(body, pressed, mu), rate
 
 
-@as_argument
-@embedded
-def _resistance_in_the_middle(problem: MarchProblem, k: int, w: Any, z: Any) -> Any:
-    """The friction coefficient in the middle of a step."""
-    pressed = normal_load_at(problem, k, MIDDLE)
-    return bristle_resistance(problem.body, problem.law, w, z, pressed)[1]
-
-
-@as_argument
-@embedded
-def _advance_over_half(problem: MarchProblem, k: int, part: int, h: float, w: Any, z: Any) -> Any:
-    """The deflection half a step later, under the mean of the normal loads at its ends."""
-    pressed = 0.5 * (normal_load_at(problem, k, part) + normal_load_at(problem, k, part + 1))
-    return bristle_advance(problem.body, problem.law, h, w, z, pressed)
-
-
 _ahead = by_springs(
     lambda body, x, v, ahead, later: linear_force(body, ahead, later),
     lambda body, x, v, ahead, later: (
@@ -315,14 +282,6 @@ def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     return StepEnd(end.x, end.v, end.friction_impulse, False, growth)
 
 
-def _by_exponential(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
-    end = exponential_step(
-        _acceleration_under, _resistance_in_the_middle, _advance_over_half, problem, start, h
-    )
-    rub = in_shares(problem.body, normal_load_at(problem, start.k, MIDDLE), end.impulse)
-    return StepEnd(end.x, end.v, rub, False, 1.0)
-
-
 def _by_sdirk2(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     body = problem.body
     end = sdirk2_step(_rates_with_a_bristle, problem, start, h, belt_swing(body))
@@ -335,7 +294,6 @@ _advance = by_stepper(
         Moreau: _by_moreau,
         Rk4: _by_rk4,
         Smoothed: _by_dop853,
-        Exponential: _by_exponential,
         Sdirk2: _by_sdirk2,
     }
 )
@@ -396,9 +354,7 @@ def _by_another_step(problem: MarchProblem, part: float, start: StepStart, end: 
     return between.x, between.v, mu
 
 
-state_within = by_stepper(
-    dict.fromkeys((Moreau, Rk4, Exponential, Sdirk2), _on_a_parabola) | {Smoothed: _by_another_step}
-)
+state_within = by_stepper(dict.fromkeys((Moreau, Rk4, Sdirk2), _on_a_parabola) | {Smoothed: _by_another_step})
 
 
 @inner

@@ -1,6 +1,8 @@
-"""Whether a march has settled, on what, and what of it is an answer: status, reason, mean and error of a point.
+"""Mean friction by time stepping, and its distance to the full answer.
 
-Time stepping from other starts, for scenes in which no theorem makes the steady state unique.
+Steps do not see what happens inside them, nor a smoothed law what it smooths: no error of a march can be told
+from its own runs alone. So its error is the distance to the answer of ``exact`` or ``shooting``, and where these
+have none, march has none either.
 """
 
 from __future__ import annotations
@@ -9,176 +11,202 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import STATISTICAL, Answers, Status
-from frictionlab.methods.march.error import (
-    WORK,
-    MarchMean,
-    Plan,
-    crossing,
-    march_mean,
-    restless,
-    steps_needed,
-    why_not,
-)
-from frictionlab.methods.march.laps import CLOSED, RESTING, STALLED, TOO_FAST, TOO_STIFF
-from frictionlab.methods.march.refusal import unstable
+from frictionlab.methods.base import PROVED, Answers, Status
+from frictionlab.methods.march.laps import CLOSED, LATE, RESTING, STALLED, TIRED, TOO_FAST, TOO_STIFF
+from frictionlab.methods.march.refusal import FEWEST_LAPS, WORK, unstable
 from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
-from frictionlab.methods.march.steppers import friction_falls
-from frictionlab.methods.shooting.attractors import describe, starts
-from frictionlab.methods.shooting.long_mean import (
-    DRIVEN,
-    FREE,
-    SHARED,
-    LongMean,
-    long_mean,
-    near_each_other,
-    spread_of_one_mean,
-)
+from frictionlab.methods.march.steppers import MARGIN, Resolution, StepperName
 from frictionlab.motion.orbit.read import read_columns
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.rest import friction_at_rest, is_convergent, resting_range, stays_at_rest
 
-LAPS_AVERAGED = 512
-"""Laps over which a motion that never repeats is averaged."""
-NOISE = 1e-3
-"""Spread of the means of a motion that does not repeat, over friction at rest, that passes for noise of the steps."""
-SHUT = 1e-7
-"""Distance from a closed orbit over normal load: chaotic motion stays near repelling cycles for a while."""
-
-
-@dataclass(frozen=True)
-class Arrival:
-    """Where a start led: a motion that repeats after some laps (0: never), and its means over one of them.
-
-    low, high: the smallest and the largest mean over one lap. followed: for how many laps. average: the mean over
-    all of them, of a motion that never repeats.
-    """
-
-    period: int
-    mean: float
-    low: float
-    high: float
-    followed: int
-    average: LongMean | None = None
-
-
-@dataclass(frozen=True)
-class OtherStarts:
-    """The other starts of a scene, each marched once with the steps of a run that began at the first start.
-
-    Both runs make the same errors, so what counts is whether they come to the same, within what those errors leave.
-    """
-
-    march: MarchRun
-    mean: MarchMean
-    first: Arrival
-    like: MarchResult
-
-    def arrivals(self) -> tuple[list[Arrival], str]:
-        """Where every start led, the first one's first, equal ones the same object; why one led nowhere, or ''."""
-        march = self.march
-        known = [self.first]
-        enough = min(self.like.pace.enough, SHUT * march.mass.normal_load)
-        pace = replace(self.like.pace, rate=0.0, enough=enough, work=max(self.like.pace.work, WORK))
-        for start in starts(march.scene, march.law)[1:]:
-            place = march.place(start)
-            run = march.run(pace, place)
-            if run.verdict == TOO_FAST:  # flung: it needs more steps than where it ends
-                steps = math.ceil(steps_needed(march, run))
-                run = march.run(replace(pace, steps=steps), place)
-            if not run.settled:
-                return known, f"from another start the motion {why_not(run)}"
-            found = self._led(run)
-            same = (old for old in known if self._agree(old, found, run))
-            known.append(next(same, found))
-        return known, ""
-
-    def _led(self, run: MarchResult) -> Arrival:
-        mean, like, spread = run.mean.real, self.like, run.high - run.low
-        noise = 2.0 * self._steps if self.first.period > 0 else 0.0
-        if run.verdict == STALLED:
-            noise = max(noise, NOISE * self.march.at_rest)
-            beside = like.verdict == STALLED and self.first.period > 0
-            noise = max(noise, 2.0 * (like.high - like.low) if beside else 0.0)
-        if spread <= noise or (run.verdict == CLOSED and run.stride == 1):
-            return Arrival(1, mean, mean, mean, run.laps)
-        if run.verdict == STALLED:
-            return unrepeated_arrival(self.march, run)
-        # repeats as the first does, or as its steps do
-        same = (run.verdict, run.stride) == (like.verdict, like.stride)
-        return Arrival(self.first.period if same else run.stride, mean, run.low, run.high, run.laps)
-
-    @property
-    def _steps(self) -> float:
-        """The error of a mean from the time steps."""
-        if self.march.facts.adaptive:  # no grid, and a bias that both runs share
-            return 1e-5 * self.march.at_rest
-        beside = abs(self.like.mean.real - self.mean.mean.real)
-        return self.mean.error + beside + crossing(self.march, self.like)
-
-    def _agree(self, old: Arrival, found: Arrival, run: MarchResult) -> bool:
-        """Within twice what these steps leave: on a grid of times slip begins and ends up to a step apart."""
-        if old.average is not None and found.average is not None:
-            return near_each_other(old.average, found.average)
-        doubt = 2.0 * self._steps + run.closing + self.like.closing
-        return 0 < old.period == found.period and abs(found.mean - old.mean) <= doubt
-
-
-def one_motion(arrivals: Sequence[Arrival]) -> bool:
-    """Whether every start reached the same motion."""
-    return all(one is arrivals[0] for one in arrivals)
-
-
-def unrepeated_arrival(march: MarchRun, run: MarchResult) -> Arrival:
-    """A motion that never repeats, followed on for its long mean."""
-    laps = march.means_of_laps(run, LAPS_AVERAGED)
-    found = long_mean([laps])
-    return Arrival(0, found.mean, float(laps.min()), float(laps.max()), len(laps), found)
-
-
-def mean_of_unrepeated(
-    march: MarchRun, run: MarchResult, others: Sequence[MarchResult], own: LongMean
-) -> LongMean:
-    """The long mean of a motion that never repeats; its error by steps, too: what those of other runs make of it, and
-    what slip that begins or ends inside a step may cost."""
-    means = [long_mean([march.means_of_laps(other, LAPS_AVERAGED)]).mean for other in others]
-    by_steps = max(abs(mean - own.mean) for mean in means) + crossing(march, run)
-    return own._replace(error=own.error + by_steps)
-
-
-def first_arrival(march: MarchRun, mean: MarchMean) -> Arrival:
-    """What the first start led to, by the finest run; undriven, the period of the response is a lap.
-
-    Steps can keep a motion from repeating every lap: laps that differ by no more than the error are one.
-    """
-    last, along = mean.runs[-1], mean.mean.real
-    alike = last.verdict != CLOSED or last.stride == 1
-    if alike or march.follows_the_drive or march.scene.undriven:
-        return Arrival(1, along, along, along, last.laps)
-    noise = min(mean.error, NOISE * march.at_rest)
-    period = 1 if last.high - last.low <= noise else last.stride
-    return Arrival(period, along, last.low, last.high, last.laps)
-
-
+COARSEST = 64
+"""Steps per period to begin with, where ``steps`` is left out."""
+MOST_WORK, MOST_ADAPTIVE = 500_000_000, 10_000_000
+"""Steps of one run, where they are given, and where they are adaptive."""
 READABLE = 4096
 """Most steps per period of the run that the columns besides the mean are read from."""
-LED_ELSEWHERE = (
-    "static friction above sliding friction: where steps lead such a motion has no known bound; use shooting"
-)
+ROUNDING = 1e-13
+"""Rounding error of the mean coefficient from summing the impulses of a period, and a thousandth of it per step."""
+NOT_KNOWN = "how far off time steps are is not known, for no other method tells the mean: "
 
 
-@dataclass(frozen=True)
+class Plan(NamedTuple):
+    """Parameters of a study for time stepping, defaults filled in."""
+
+    stepper: StepperName
+    theta: float
+    steps: int | None
+    width: float
+    smoothing: str
+    periods: int
+
+
+class FullAnswer(NamedTuple):
+    """Answer of ``exact`` or ``shooting`` to a scene; NaN where there is none.
+
+    reason: why there is none.
+    """
+
+    status: Status
+    mean: float
+    error: float
+    low: float
+    high: float
+    window: float
+    period: float
+    unique: str
+    reason: str
+
+    @classmethod
+    def of(cls, answers: Answers, i: int) -> FullAnswer:
+        """Return the i-th of several answers."""
+        ranges = answers.mean_low, answers.mean_high, answers.window
+        numbers = (answers.mean.real, answers.error, *ranges, answers.period)
+        mean, error, *others = (math.nan if each is None else float(each[i]) for each in numbers)
+        low, high, window, period = others
+        unique = answers.unique[i] if answers.unique else ""
+        return cls(answers.status[i], mean, error, low, high, window, period, unique, answers.reason[i])
+
+
+# --- runs ---------------------------------------------------------------------------------------------------------
+
+
+class Runs:
+    """Runs of one motion, each from where the last one ended, until one is near enough to the full answer.
+
+    known: mean of the full answer.
+    """
+
+    def __init__(self, march: MarchRun, plan: Plan, tolerance: float, known: float) -> None:
+        self.march, self.plan, self.tolerance, self.known = march, plan, tolerance, known
+        self.all: list[MarchResult] = []
+        if march.facts.adaptive:
+            self._by_width()
+        elif plan.steps is not None:
+            self._run(self._steps(plan.steps, MOST_WORK))
+            self.asked = self.all[0]
+        else:
+            self._by_halving()
+
+    @property
+    def apart(self) -> float:
+        """Distance of the mean to the full answer."""
+        return abs(self.asked.mean.real - self.known) + ROUNDING * (1.0 + 1e-3 * self.asked.pace.steps)
+
+    @property
+    def readable(self) -> MarchResult:
+        """Run of which an orbit is kept: the one asked for, else the finest that is not too long to keep."""
+        if self.plan.steps is not None:
+            return self.asked
+        fine = [run for run in self.all if run.settled and run.pace.steps <= READABLE]
+        return fine[-1] if fine else self.asked
+
+    @property
+    def _changed(self) -> float:
+        return abs(self.all[-1].mean - self.all[-2].mean)
+
+    def _run(self, pace: Resolution) -> None:
+        before = self.all[-1] if self.all else None
+        self.all.append(self.march.run(pace, before.place if before and self.march.forgets else None))
+
+    def _steps(self, steps: int, work: int) -> Resolution:
+        before = self.all[-1] if self.all else None
+        share = max(0.05 * self.tolerance, 2e-3 * self.march.law.sliding_friction(1.0) / steps)
+        return Resolution(
+            steps=steps,
+            refined=steps // self.all[0].pace.steps if before else 1,
+            theta=self.plan.theta,
+            enough=0.25 * share * self.march.mass.normal_load,
+            most=self.plan.periods,
+            work=max(work, FEWEST_LAPS * steps),
+            rate=before.rate if before is not None and before.verdict == CLOSED else 0.0,
+        )
+
+    def _by_halving(self) -> None:
+        """Halve the step until the mean is near enough or the work is done."""
+        # what the motion asks for, and what the stepper needs not to explode
+        steps, work = max(COARSEST * self._slowness(), self.march.fewest()), 0
+        while True:
+            self._run(self._steps(steps, WORK - work))
+            run = self.all[-1]
+            work += run.steps
+            if not run.settled:
+                more = steps_needed(self.march, run)
+                if 3 * FEWEST_LAPS * more > WORK - work:
+                    break
+                self.all, steps = [], math.ceil(more)
+                continue
+            self.asked = run
+            # one mean alone may be near by chance
+            near = self.apart <= self.tolerance and len(self.all) > 1 and self._changed <= self.tolerance
+            if near or work + 2 * run.steps * min(1.0, 12 / run.laps) > WORK:
+                break
+            steps *= 2
+        settled = [each for each in self.all if each.settled]
+        self.asked = settled[-1] if settled and self.all[-1].verdict != TOO_STIFF else self.all[-1]
+
+    def _slowness(self) -> int:
+        """Return by how much a slow drive needs more steps a period, for the body's own motion."""
+        mass = self.march.mass
+        quickest = max(1.0, mass.damping, mass.varying.quickest if mass.varying else 0.0)
+        if not self.march.straight:
+            quickest = max(quickest, math.sqrt(mass.transverse_stiffness), mass.transverse_damping)
+        return max(1, math.ceil(quickest / mass.frequency - 1e-9))
+
+    def _by_width(self) -> None:
+        """Run friction smoothed over this width."""
+        plan, mass = self.plan, self.march.mass
+        load = mass.normal_load * self.march.law.sliding_friction(plan.width)
+        accuracy = max(min(1e-5 * self.tolerance * load, 1e-3 * plan.width, 1e-6 * load), 1e-13 * load)
+        pace = Resolution(
+            width=plan.width,
+            smoothing=plan.smoothing,
+            accuracy=accuracy,
+            enough=1e3 * accuracy,
+            most=plan.periods,
+            work=MOST_ADAPTIVE,
+        )
+        self._run(pace)
+        self.asked = self.all[0]
+
+
+def steps_needed(march: MarchRun, run: MarchResult) -> float:
+    """Return the steps per period that are stable where those of a run were not; else infinity."""
+    if run.verdict == TOO_FAST:
+        return 1.5 * run.pace.steps * run.met / march.fastest(run.pace)
+    return MARGIN * march.through_rest if run.verdict == TOO_STIFF else math.inf
+
+
+def why_not(run: MarchResult) -> str:
+    """Return why a run has no steady state, as the continuation of "the motion"."""
+    if run.verdict == LATE:
+        return (
+            f"still changes by {run.drift:.1e} a period after {run.laps} periods (at most {run.pace.most}); "
+            f"give more periods"
+        )
+    if run.verdict == TOO_FAST and math.isfinite(run.met):
+        return f"slips faster, at {run.met:.3g}, than {run.pace.steps} steps per period are stable for"
+    if run.verdict == TOO_STIFF:
+        return f"comes to rest, where the law is too stiff for {run.pace.steps} explicit steps per period"
+    if run.verdict == TIRED:
+        return f"is not periodic within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
+    return f"is not finite after {run.laps} periods: it grows without bound, or never returns; give shorter steps"
+
+
+# --- answers ------------------------------------------------------------------------------------------------------
+
+
+@dataclass
 class PointAnswer:
     """Mean friction (x1 + i x2), the error of its x1 and the period; the range of a mean that depends on the start.
 
-    window: of the range, or of a mean without a period.
-
-    Whatever is not known is NaN.
+    window: of the range, or of a mean without a period. What is not known is NaN.
     """
 
     mean: complex = complex(math.nan, math.nan)
@@ -190,63 +218,51 @@ class PointAnswer:
 
 
 class MarchedPoint:
-    """One scene, marched, and what came of it."""
+    """One scene, marched, and its answer."""
 
-    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan) -> None:
-        self.scene, self.law, self.plan = scene, law, plan
+    def __init__(
+        self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan, full: FullAnswer
+    ) -> None:
+        self.scene, self.law, self.plan, self.full = scene, law, plan, full
         self.march = MarchRun(scene, law, plan.stepper)
         self.answer = PointAnswer()
         self.status: Status = "failed"
-        self.reason, self.model, self.error_kind = "", "", "estimated"
+        self.reason, self.model, self.unique = "", "", ""
         self.orbit: Callable[[], Orbit | None] = nowhere
-        if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
-            self._leave_open(-resting_range(scene, law, -1.0), resting_range(scene, law))
+        if full.status == "ok":
+            self._judge(Runs(self.march, plan, tolerance, full.mean), tolerance)
+        elif full.status == "not_unique":
+            self.status, self.reason, self.unique = "not_unique", full.reason, full.unique
+            self.answer = PointAnswer(low=full.low, high=full.high, window=full.window)
         else:
-            self._judge(march_mean(self.march, plan, tolerance), tolerance)
+            self.status, self.reason = full.status, NOT_KNOWN + full.reason
         self.seconds = self.march.seconds
 
-    def _leave_open(self, low: float, high: float) -> None:
-        self._range(low, high)
-        self.reason = (
-            "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
-            "give scene.initial to choose a start"
-        )
-
-    def _range(self, low: float, high: float, window: float = 1.0) -> None:
-        self.status = "not_unique"
-        self.answer = PointAnswer(low=low, high=high, window=window)
-
-    def _judge(self, mean: MarchMean, tolerance: float) -> None:
-        last = mean.runs[-1]
-        theta = f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
-        self.model = f"march, {self.plan.stepper}{theta}: {mean.how or 'no steady state'}"
-        if not last.settled:
-            self._give_up(last)
+    def _judge(self, runs: Runs, tolerance: float) -> None:
+        run = runs.asked
+        if not run.settled:
+            self._give_up(run)
             return
-        readable = self._readable(mean.runs)
-        arrivals, problem = self._arrivals(mean, readable)
-        unique = not problem and one_motion(arrivals)
-        chosen = unique or self.scene.initial is not None
-        if not problem and (long := self._long_mean(arrivals, chosen)) is not None:
-            if friction_at_rest(self.law) > self.law.sliding_friction(0.0):
-                self.reason = f"{describe(arrivals, 6)}; {LED_ELSEWHERE}"
-                return
-            self._accept_long_mean(mean.runs, readable, long)
-        elif (own := arrivals[0].period) > 0 and chosen:
-            # Which lap's mean is meant makes so much of a difference.
-            spread = arrivals[0].high - arrivals[0].low if own == 1 else 0.0
-            self._accept(replace(mean, error=mean.error + spread), readable, tolerance, own)
-        elif problem:
-            self.reason = f"{describe(arrivals, 6)}; {problem}"
-        else:
-            self._leave_range(arrivals)
-        if self.status == "ok" and not unique:
-            others = "; ".join(filter(None, (describe(arrivals, 6), problem)))
-            start = self.scene.initial is not None
-            self._remark(f"{'reached from scene.initial; ' if start else SHARED}{others}")
+        error = runs.apart + self.full.error
+        # steps can keep a motion from repeating as soon as it would
+        laps = self.full.period / self.march.periods if not self.scene.undriven else math.nan
+        alike = run.high - run.low <= max(error, tolerance)
+        own = round(laps) if math.isfinite(laps) else 1 if alike else run.stride
+        self.status, self.unique = "ok", self.full.unique if self.full.unique != PROVED else ""
+        self.orbit = partial(self._orbit, runs.readable, run.stride if self.scene.undriven else own)
+        self.answer = PointAnswer(run.mean, error, self._period(run, own))
+        theta = f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
+        self.model = f"march, {self.plan.stepper}{theta}: {self._pace(run)}"
+        self._remark(run, tolerance)
+
+    def _pace(self, run: MarchResult) -> str:
+        """Return the steps or the smoothing of a run in words."""
+        if self.march.facts.adaptive:
+            return f"{self.plan.smoothing} of width {self.plan.width:g}"
+        return f"{run.pace.steps} steps per period"
 
     def _give_up(self, last: MarchResult) -> None:
-        """Without a steady state: refused where other steps would do, else failed."""
+        """Tell why there is no steady state: refused where other steps would do, else failed."""
         self.reason = f"the motion {why_not(last)}"
         if last.verdict == TOO_FAST and math.isfinite(last.met):
             self.status = "refused"
@@ -257,111 +273,27 @@ class MarchedPoint:
             fewest_said = f"{steps_needed(self.march, last):.2g}"
             self.reason += f": about {fewest_said} are enough; or use method shooting"
 
-    def _arrivals(self, mean: MarchMean, readable: MarchResult) -> tuple[list[Arrival], str]:
-        """Where the starts lead; and why one leads nowhere, or ''."""
-        if restless(mean.runs, self.march):
-            first = unrepeated_arrival(self.march, readable)
-        else:
-            first = first_arrival(self.march, mean)
-        if not self._may_depend_on_start():
-            return [first], ""
-        return OtherStarts(self.march, mean, first, readable).arrivals()
+    def _remark(self, run: MarchResult, tolerance: float) -> None:
+        """Note what the mean was averaged over, and an error above the tolerance."""
+        averaged = self.march.window * self.march.periods
+        notes = [
+            f"rounding to time steps makes the motion aperiodic: averaged over {averaged:.0f} periods"
+            if run.verdict == STALLED
+            else "",
+            "" if self.answer.error <= tolerance else f"the error is above the tolerance {tolerance:.1e}",
+            self.full.reason if self.unique else "",
+        ]
+        self.reason = "; ".join(filter(None, notes))
 
-    def _may_depend_on_start(self) -> bool:
-        """Whether another start may lead elsewhere, in a row that is not about one start alone."""
-        scene, law = self.scene, self.law
-        if scene.undriven or stays_at_rest(scene, law):
-            return False
-        if law.memory_kind == "none":
-            return not is_convergent(scene, law)
-        if scene.bends:
-            return True
-        if law.memory_kind == "scalars" or friction_falls(law):
-            return True
-        # An elastic contact holds the mass wherever it stops on a belt at rest; several deflections always do.
-        elastic = law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
-        return scene.belt_speed == 0.0 and elastic
-
-    def _leave_range(self, arrivals: Sequence[Arrival]) -> None:
-        means, window = (
-            [one.mean for one in arrivals],
-            max(one.followed if one.average else 1 for one in arrivals),
-        )
-        self._range(min(means), max(means), window)
-        falls = self.law.memory_kind == "none" or friction_falls(self.law)
-        why = "friction falls with speed: " if self._may_depend_on_start() and falls else ""
-        why = "springs and dashpots are not linear: " if self.scene.bends else why
-        if not why and arrivals[0].period == 0:
-            why = "the motion is not periodic at any step: "
-        self.reason = why + describe(arrivals, 6)
-
-    def _lost_in_chatter(self, mean: MarchMean) -> float:
-        """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
-        if not self.march.facts.is_blind(self.law.memory_kind):
-            return 0.0
-        step = 2.0 * math.pi / self.scene.frequency / mean.runs[-1].pace.steps
-        jump = self.march.mass.normal_load * self.march.at_rest * step
-        return self.march.at_rest + abs(mean.mean.real) if abs(self.scene.belt_speed) < jump else 0.0
-
-    def _remark(self, said: str) -> None:
-        self.reason = "; ".join(filter(None, (self.reason, said)))
-
-    def _accept(self, mean: MarchMean, readable: MarchResult, tolerance: float, own: int) -> None:
-        """Answer by this mean, of a motion that takes so many laps; undriven, as many as the last run says."""
-        last = mean.runs[-1]
-        self.status = "ok"
-        self.orbit = partial(self._orbit, readable, last.stride if self.scene.undriven else own)
-        error = max(mean.error, self._lost_in_chatter(mean))
-        self.answer = PointAnswer(mean.mean, error, self._period(mean, last, own))
-        if last.verdict == STALLED:
-            averaged = self.march.window * self.march.periods
-            self._remark(
-                f"rounding to time steps makes the motion aperiodic: averaged over {averaged:.0f} periods"
-            )
-        if not (self.march.converges or self._may_depend_on_start() or self._moves_on()):
-            start = "scene.initial" if self.scene.initial else "the default start"
-            self._remark(f"the state reached from {start}; no other start was tried")
-        if not self.answer.error <= tolerance:
-            self._remark(f"the error is above the tolerance {tolerance:.1e}")
-
-    def _long_mean(self, arrivals: Sequence[Arrival], chosen: bool) -> LongMean | None:
-        """Of a motion that never repeats: the first one, where it was chosen; else one that all share the mean of."""
-        if chosen:
-            return arrivals[0].average
-        known = [one.average for one in arrivals if one.average]
-        errors = [one.average.error if one.average else 0.0 for one in arrivals]  # steps tell theirs
-        spread = spread_of_one_mean([one.mean for one in arrivals], errors, 0.0)
-        return None if not known or math.isnan(spread) else known[0]._replace(error=max(errors) + spread)
-
-    def _accept_long_mean(self, runs: Sequence[MarchResult], readable: MarchResult, long: LongMean) -> None:
-        """Answer by the long mean of a motion that never repeats."""
-        others = [run for run in (runs if self.plan.steps else runs[-2:]) if run is not readable]
-        found = mean_of_unrepeated(self.march, readable, others, long)
-        self.status, self.error_kind = "ok", STATISTICAL
-        self.orbit = partial(self._orbit, readable, 1)
-        window = LAPS_AVERAGED * readable.period / readable.stride / self.march.drive_period
-        self.answer = PointAnswer(complex(found.mean, math.nan), found.error, window=window)
-        self._remark(found.sentence(window, FREE if self.scene.undriven else DRIVEN))
-
-    def _moves_on(self) -> bool:
-        """Whether bristles that a moving belt drags along forget where the mass started."""
-        moves = self.scene.belt_speed != 0.0 and not self.scene.undriven
-        return self.law.count() > 0 and moves
-
-    def _period(self, mean: MarchMean, last: MarchResult, own: int) -> float:
+    def _period(self, run: MarchResult, own: int) -> float:
         if not self.scene.undriven:
             return self.march.periods * own
         swing = read_columns([self.scene], lambda i: self.orbit())["velocity_amplitude"][0]
-        still = swing <= 2.0 * last.pace.enough
-        return math.nan if last.verdict == RESTING or still else mean.period / (2.0 * math.pi)
-
-    def _readable(self, runs: Sequence[MarchResult]) -> MarchResult:
-        """The run of which an orbit is kept: the one asked for, else the finest that is not too long to keep."""
-        fine = [run for run in runs if run.pace.steps <= READABLE] or [runs[0]]
-        return runs[0] if self.plan.steps is not None else fine[-1]
+        still = swing <= 2.0 * run.pace.enough
+        return math.nan if run.verdict == RESTING or still else run.period / (2.0 * math.pi)
 
     def _orbit(self, run: MarchResult, own: int) -> Orbit:
-        """The orbit of a run whose response takes ``own`` laps; more where steps keep it from repeating so soon."""
+        """Return the orbit of a run whose response takes ``own`` laps; of more if steps keep it from repeating."""
         steps = max(1, run.steps // run.laps)
         laps = max(1, min(LONGEST_PERIOD, LONGEST_PERIOD * READABLE // steps))
         laps = laps if run.verdict == STALLED else run.stride
@@ -371,23 +303,23 @@ class MarchedPoint:
 
 
 def nowhere() -> None:
-    """The orbit of a point without one."""
+    """Return no orbit."""
 
 
 def answers_of(points: Sequence[MarchedPoint]) -> Answers:
-    """The answers of points, none of which hangs on another."""
-    low = np.array([point.answer.low for point in points])
+    """Return the answers of points, none of which hangs on another."""
     return Answers(
         status=[point.status for point in points],
         reason=[point.reason for point in points],
         model=[point.model for point in points],
-        error_kind=[point.error_kind if point.status == "ok" else "" for point in points],
+        error_kind=["estimated" if point.status == "ok" else "" for point in points],
         mean=np.array([point.answer.mean for point in points]),
         error=np.array([point.answer.error for point in points]),
         period=np.array([point.answer.period for point in points]),
-        mean_low=low,
+        mean_low=np.array([point.answer.low for point in points]),
         mean_high=np.array([point.answer.high for point in points]),
         window=np.array([point.answer.window for point in points]),
+        unique=[point.unique for point in points],
         seconds=np.array([point.seconds for point in points]),
         orbit=lambda i: points[i].orbit(),
     )

@@ -23,12 +23,6 @@ from frictionlab.motion.steppers.step import StepEnd, StepStart
 
 NOTHING = np.zeros(1)
 """Of a memory that is none."""
-SHORT = 3
-"""Steps at rest within which a reversal counts as one without stick."""
-NO_DIP = 1e300
-"""A least slip speed where there is none."""
-CONTINUES = 1e-12
-"""Change of slip at a corner, over the speeds it is a difference of, that passes for none."""
 
 
 class MarchSettings(NamedTuple):
@@ -45,7 +39,6 @@ class MarchSettings(NamedTuple):
     most: int  # laps
     stride: int  # laps after which the motion is to repeat
     rate: float  # at which gaps are known to shrink from lap to lap; 0: unknown
-    near: float  # slip speed below which the stepper cannot tell stick from creep
     work: int  # most steps
     window: int  # laps over which a motion that does not close is judged, twice
     room: int  # panels of the record of the last lap
@@ -56,20 +49,11 @@ class MarchSettings(NamedTuple):
 
 
 class SlipTrace(NamedTuple):
-    """Slip at the end of the last step, and what it did since the lap began."""
+    """Slip since a lap began: the last that was not zero, the quickest, and whether it reversed."""
 
-    w: Any  # the last that was not zero
-    speed: float
-    before: float  # the speed a step earlier; below zero where slip reversed since
-    crossed: bool  # whether it reversed in the last step
-    resting: int  # steps
-    dip: float  # least slip speed between two nodes of more slip, no reversal seen
-    bend: float  # second derivative of slip speed there
-    crossings: int  # reversals of slip within a few steps; a run of them counts once
-    turn: float  # largest rate at which slip passed through zero
-    met: float  # most slip
-    lingered: float  # time with less slip than ``near``
-    flips: int  # reversals of slip by a jump of the belt, between steps
+    w: Any
+    met: float
+    reverses: bool
 
 
 class Tally(NamedTuple):
@@ -128,37 +112,10 @@ def falling_zero(problem: MarchProblem, start: StepStart, h: float) -> float:
 
 
 @embedded
-def slip_trace(trace: SlipTrace, w: Any, h: float, near: float) -> SlipTrace:
-    """The trace after a step over h that ended with slip w; near: slip speed that passes for creep."""
-    speed, turned = length(w), (trace.w * w.conjugate()).real
-    dip, bend, turn = trace.dip, trace.bend, trace.turn
-    # A minimum of the slip speed between two nodes: what the steps may have missed of a reversal there.
-    if trace.before >= trace.speed < speed and turned > 0.0 and trace.speed < dip:
-        dip, bend = trace.speed, (trace.before - 2.0 * trace.speed + speed) / (h * h)
-    # Chatter reverses every step: a run of reversals counts once, and one after a longer rest is a release.
-    alone = turned < 0.0 and not trace.crossed and trace.resting <= SHORT
-    if turned < 0.0:
-        turn = max(turn, length(w - trace.w) / h)
-    return SlipTrace(
-        w if speed > 0.0 else trace.w,
-        speed,
-        trace.speed if turned > 0.0 else -1.0,
-        turned < 0.0,
-        trace.resting + 1 if speed == 0.0 else 0,
-        dip,
-        bend,
-        trace.crossings + (1 if alone else 0),
-        turn,
-        max(trace.met, speed),
-        trace.lingered + (h if speed < near else 0.0),
-        trace.flips,
-    )
-
-
-@embedded
-def first_trace(w: Any) -> SlipTrace:
-    """The trace of a lap that begins with slip w."""
-    return SlipTrace(w, length(w), -1.0, False, 0, NO_DIP, 1.0, 0, 0.0, 0.0, 0.0, 0)
+def slip_trace(trace: SlipTrace, w: Any) -> SlipTrace:
+    """The trace with one more slip velocity."""
+    speed, turned = length(w), (trace.w * w.conjugate()).real < 0.0
+    return SlipTrace(w if speed > 0.0 else trace.w, max(trace.met, speed), trace.reverses or turned)
 
 
 @inner
@@ -230,16 +187,7 @@ def _same_trace(body: Any, belt_speed: float, lap: Lap) -> SlipTrace:
 
 
 def _trace_past_corner(body: Any, belt_speed: float, lap: Lap) -> SlipTrace:
-    trace, w = lap.trace, slip(body, belt_speed, instant_at(body, lap.duration), lap.v)
-    speed, turned = length(w), (trace.w * w.conjugate()).real
-    little = CONTINUES * (length(lap.v) + length(lap.v - w))
-    if abs(speed - trace.speed) <= little and (turned > 0.0 or speed <= little):
-        return trace
-    # Slip has jumped with the belt: what came before says nothing of the next steps.
-    return SlipTrace(
-        w if speed > 0.0 else trace.w, speed, -1.0, False, 0, trace.dip, trace.bend, trace.crossings, trace.turn,
-        max(trace.met, speed), trace.lingered, trace.flips + (1 if turned < 0.0 else 0),
-    )  # fmt: skip
+    return slip_trace(lap.trace, slip(body, belt_speed, instant_at(body, lap.duration), lap.v))
 
 
 past_corner = by_variation(_same_trace, _trace_past_corner)
@@ -269,7 +217,7 @@ def march_lap(
 ) -> Lap:
     """From tau = 0 once around, corner by corner; h: the first step."""
     body, belt_speed, x = problem.body, problem.belt_speed, start.x
-    trace = first_trace(slip(body, belt_speed, instant_at(body, 0.0), start.v))
+    trace = SlipTrace(slip(body, belt_speed, instant_at(body, 0.0), start.v), 0.0, False)
     lap = Lap(x, start.v, Tally(0.0 * x, 0.0, 0.0), trace, 0.0, h, 0, True)
     for k in range(pieces_of(body)):
         end = piece_end(body, settings, k)
@@ -311,7 +259,7 @@ def march_piece(problem: MarchProblem, settings: MarchSettings, lap: Lap, end: f
         x, v, k, tau = taken.x, taken.v, k + 1 if driven else k, end if last and not back else tau + step
         # At rest on a belt that vibrates there is no slip but the rounding of a difference.
         w = 0.0 * v if taken.stuck else slip(body, belt_speed, instant_at(body, tau), v)
-        trace = slip_trace(trace, w, step, settings.near)
+        trace = slip_trace(trace, w)
         tally = tally_step(tally, taken, step)
         if back:
             break

@@ -16,7 +16,6 @@ from frictionlab.methods.march.lap import (
     Lap,
     MarchSettings,
     SlipTrace,
-    first_trace,
     march_lap,
     steps_in,
 )
@@ -281,7 +280,7 @@ def march_laps(
         memory[k] = start.z[k]
     keep_state(laps, 0, start.x, start.v, problem)
     # Lap by lap, each from where the last one ended and with the step that it ended with.
-    trace, x, v, step = first_trace(start.v), start.x, start.v, settings.first
+    trace, x, v, step = SlipTrace(start.v, 0.0, False), start.x, start.v, settings.first
     progress = MarchProgress(0, 0, 1e300, 0, LATE)
     while progress.laps < settings.most and progress.verdict == LATE:
         lap = march_lap(problem, settings, StepStart(0, 0.0, x, v), step, track)

@@ -9,12 +9,13 @@ from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive
 from frictionlab.methods.base import Answers, Method
-from frictionlab.methods.march.error import Plan
-from frictionlab.methods.march.judge import MarchedPoint, answers_of
+from frictionlab.methods.march.judge import FullAnswer, MarchedPoint, Plan, answers_of
 from frictionlab.methods.march.refusal import Request, reasons_against
 from frictionlab.methods.march.steppers import STEPPERS, StepperName, steppers_of
+from frictionlab.methods.reduced.common import full_answers
 from frictionlab.methods.under_way import each_told
 from frictionlab.scene.scene import Scene
+from frictionlab.values.quantities import gone
 
 
 def _whole(given: object) -> object:
@@ -29,6 +30,8 @@ def _half_or_one(given: object) -> object:
     return 1.0 if given == 1 else 0.5
 
 
+NO_EXPONENTIAL = "the exponential stepper is gone: use sdirk2, which needs no short steps either, or rk4"
+NO_ROOT = "smoothing by a square root is gone: use tanh or arctan"
 Theta = Annotated[float, BeforeValidator(_half_or_one)]
 Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
 
@@ -41,29 +44,26 @@ class March(Method):
     constant); other memory may not.
 
     The motion starts from ``scene.initial``, else on the friction-free orbit, undriven at rest on the belt.
-    If no theorem makes the steady state unique, motions from starts far from each other must reach the same
-    one.
+    The error of the mean is its distance to the answer of ``exact`` or ``shooting``, which also tell whether
+    the steady state is unique. Where these have no answer march has none: nothing else tells how far off steps
+    are.
 
     Parameters
     ----------
-    stepper : {"moreau", "rk4", "smoothed", "exponential", "sdirk2"}, optional
+    stepper : {"moreau", "rk4", "smoothed", "sdirk2"}, optional
         Stepper. For laws without memory: "moreau" (default: Moreau-Jean, friction projected on its disk),
         "rk4" (Runge-Kutta of order 4, which ignores the jump of friction) or "smoothed" (DOP853 with step
-        control, friction smoothed at rest). For laws with bristles: "exponential" (default: bristles carried
-        exactly along the slip, of order 2, steps limited by the mass held by its bristles alone), "rk4"
-        (steps limited by stiffness*speed/friction as well) or "sdirk2" (L-stable, of order 2, no limit). For
+        control, friction smoothed at rest). For laws with bristles: "rk4" (default; steps limited by the mass
+        held by its bristles and by stiffness*speed/friction) or "sdirk2" (L-stable, of order 2, no limit). For
         laws with several memories or scalars: "rk4" (steps limited by their largest rate).
     theta : float, 0.5 or 1, optional
         Parameter theta [-] of "moreau"; 0.5 if left out.
     steps : int, >= 4, optional
-        Steps per period of the drive, without a drive per 2 pi; of all steppers but "smoothed". The mean is
-        that of this number of steps, and its error is estimated with two and four times as many. If left out,
-        steps are doubled until the error is below the tolerance or a point has cost 16 million steps, and the
-        mean is extrapolated if the order can be seen.
+        Steps per period of the drive, without a drive per 2 pi; of all steppers but "smoothed". If left out,
+        steps are doubled until the error is below the tolerance or a point has cost 16 million steps.
     width : float, > 0, optional
-        Width of the smoothing [scene velocity] of "smoothed"; 0.01 if left out. The mean is that of this
-        width, and its error estimates the bias from twice, half and a quarter of the width.
-    smoothing : {"tanh", "square_root", "arctan"}, optional
+        Width of the smoothing [scene velocity] of "smoothed"; 0.01 if left out.
+    smoothing : {"tanh", "arctan"}, optional
         Smoothing function of "smoothed"; "tanh" if left out.
     periods : int, >= 4, default 100000
         Largest number of periods to wait for the motion to repeat.
@@ -71,7 +71,7 @@ class March(Method):
     References
     ----------
     Sources: moreau: Moreau (1988), Jean (1999); rk4: Kutta (1901); smoothed: Hairer, Nørsett & Wanner (1993);
-    exponential: Strang (1968); sdirk2: Alexander (1977).
+    sdirk2: Alexander (1977).
 
     Examples
     --------
@@ -85,11 +85,11 @@ class March(Method):
     name: ClassVar[str] = "march"
     in_words: ClassVar[str] = "time stepping"
 
-    stepper: StepperName | None = None
+    stepper: Annotated[StepperName | None, gone("exponential", NO_EXPONENTIAL)] = None
     theta: Theta | None = None
     steps: Count | None = None
     width: Positive | None = None
-    smoothing: Literal["tanh", "square_root", "arctan"] | None = None
+    smoothing: Annotated[Literal["tanh", "arctan"] | None, gone("square_root", NO_ROOT)] = None
     periods: Count = 100_000
 
     @field_validator("theta", "steps", "width", "smoothing", mode="before")
@@ -104,9 +104,7 @@ class March(Method):
         return given
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """A stepper of another kind of law; of a law without memory, a static coefficient above the sliding one, but
-        for moreau along the belt; bristles too stiff for an explicit stepper.
-        """
+        """Return why a stepper cannot do this: another kind of law, static friction without stick, too stiff."""
         assert scene.normal_load is not None
         law = law.under_load(scene.normal_load)
         return next(reasons_against(Request(scene, law, self._stepper(law), self.theta, self.steps)), None)
@@ -119,17 +117,12 @@ class March(Method):
         """Answer each scene by itself, from its own start."""
         assert scenes[0].normal_load is not None
         law = law.under_load(scenes[0].normal_load)
-        plan = self._plan(law, scenes[0].remembers)
-        return answers_of([MarchedPoint(scene, law, tolerance, plan) for scene in each_told(scenes)])
-
-    def _plan(self, law: FrictionLaw, remembers: bool) -> Plan:
-        theta, stepper = self.theta or 0.5, self._stepper(law)
-        return Plan(
-            stepper=stepper,
-            theta=theta,
-            order=min(STEPPERS[stepper].order(theta), 2 if remembers else 8),  # forces of order two
-            steps=self.steps,
-            width=self.width or 0.01,
-            smoothing=self.smoothing or "tanh",
-            periods=self.periods,
+        theta, width, smoothing = self.theta or 0.5, self.width or 0.01, self.smoothing or "tanh"
+        plan = Plan(self._stepper(law), theta, self.steps, width, smoothing, self.periods)
+        full = full_answers(scenes, law)
+        return answers_of(
+            [
+                MarchedPoint(scene, law, tolerance, plan, FullAnswer.of(full, i))
+                for i, scene in enumerate(each_told(scenes))
+            ]
         )

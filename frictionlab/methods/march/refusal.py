@@ -9,7 +9,6 @@ from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import about_rest, beyond_linear
-from frictionlab.methods.march.error import FEWEST_LAPS, WORK
 from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, fewest_steps, steppers_of
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.shooting.method import suggest_shooting
@@ -18,6 +17,8 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.springs import is_exact
 
+FEWEST_LAPS, WORK = 10, 16_000_000
+"""Fewest laps that a motion takes to settle; steps that a point may cost in all, where ``steps`` is left out."""
 GRIDDED = [name for name, facts in STEPPERS.items() if facts.gridded]
 SEVERAL = "deflections", "scalars"
 """Kinds of memory that are several numbers, or no deflection."""
@@ -110,18 +111,9 @@ def _against_several_memories(asked: Request) -> Iterator[str]:
 
 
 def _against_jumps(asked: Request) -> Iterator[str]:
-    """Static friction above sliding friction, but for moreau along the belt."""
-    law, scene = asked.law, asked.scene
-    if asked.kind != "none" or not friction_at_rest(law) > law.sliding_friction(0.0):
-        return
-    if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
-        yield suggest_shooting(
-            "static friction above sliding friction: in the plane a time step may stop a mass that passes rest, "
-            "and the error of that has no known bound",
-            scene,
-            law,
-        )
-    if not asked.facts.sticks:
+    """Static friction above sliding friction, for steppers without stick."""
+    jumps = asked.kind == "none" and friction_at_rest(asked.law) > asked.law.sliding_friction(0.0)
+    if jumps and not asked.facts.sticks:
         yield (
             f"stepper {asked.stepper} has no stick, and static friction above sliding friction needs it; "
             f"use stepper moreau"
@@ -132,10 +124,10 @@ def _against_rates(asked: Request) -> Iterator[str]:
     """Rates of a memory without a bound, or that jump."""
     law = asked.law
     if asked.facts.limited_by_rates and math.isinf(law.largest_rate(1.0)):
-        what, use = ("the memory", "shooting") if asked.kind in SEVERAL else ("bristles", "exponential")
+        what, use = ("the memory", "shooting") if asked.kind in SEVERAL else ("bristles", "sdirk2")
         yield f"stepper {asked.stepper} needs a bound on the decay rate of {what}, and this law has none; use {use}"
     if not asked.facts.bears_jumps and math.isfinite(law.yield_deflection()):
-        yield f"stepper {asked.stepper} needs continuous rates, and those of this law jump at yield; use exponential"
+        yield f"stepper {asked.stepper} needs continuous rates, and those of this law jump at yield; use rk4"
 
 
 def _against_so_few_steps(asked: Request) -> Iterator[str]:
@@ -147,7 +139,7 @@ def _against_so_few_steps(asked: Request) -> Iterator[str]:
     if asked.steps is None and 3 * FEWEST_LAPS * fewest > WORK:
         yield (
             f"stepper {stepper} is unstable on {_stiff(law)} below about {fewest:,} steps per period, too "
-            f"many to refine with {WORK:,} steps in all; give steps, or use {_others(law, 'exponential')}"
+            f"many to refine with {WORK:,} steps in all; give steps, or use {_others(law)}"
         )
 
 
@@ -155,7 +147,7 @@ def unstable(steps: int, fewest: int, law: FrictionLaw, stepper: str) -> str:
     """Why an explicit stepper is unstable with so many steps, and how many are enough."""
     return (
         f"stepper {stepper} is unstable on {_stiff(law)} with {steps:,} steps per period: about {fewest:,} "
-        f"are enough; or use {_others(law, stepper)}"
+        f"are enough; or use {_others(law)}"
     )
 
 
@@ -163,7 +155,6 @@ def _stiff(law: FrictionLaw) -> str:
     return "memory this fast" if law.memory_kind in SEVERAL else "bristles this stiff"
 
 
-def _others(law: FrictionLaw, stepper: str) -> str:
-    if law.memory_kind in SEVERAL:
-        return "method shooting"
-    return "stepper exponential or sdirk2" if stepper == "rk4" else "stepper sdirk2"
+def _others(law: Any) -> str:
+    smooth = law.memory_kind == "bristle" and not math.isfinite(law.yield_deflection())
+    return "stepper sdirk2" if smooth else "method shooting"

@@ -39,7 +39,6 @@ from frictionlab.motion.equation import mean_friction, quickest_of, span
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
-from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
@@ -49,34 +48,23 @@ LONGEST_PERIOD = 8
 
 @dataclass(frozen=True)
 class MarchResult:
-    """What a run came to: means over one period of the response, and how well they are known.
+    """Means of a run over one period of the response.
 
-    closing bounds what is missing in the mean because the motion does not close; low and high are the extremes of
-    the mean over one lap, over the laps it was watched for.
+    Low and high are the extremes of the mean over one lap, over the laps it was watched for.
     """
 
     pace: Resolution
     place: MarchState
     mean: complex
-    closing: float
     low: float
     high: float
     laps: int
     period: float  # time
-    stuck: float  # time, in the last lap
     verdict: int
-    dip: float  # least slip speed between two nodes of more slip, no reversal seen
-    bend: float  # second derivative of slip speed there
-    crossings: int  # per period of the response
-    flips: int  # reversals by jumps of the belt, in the last lap
     rate: float
-    creeping: (
-        float  # share of the period in which the stepper cannot tell stick from creep, where that matters
-    )
     steps: int
     stride: int
     drift: float  # gap of the last lap, in the norm of energy
-    turn: float  # largest rate at which slip passed through zero
     met: float  # most slip
 
     @property
@@ -113,36 +101,6 @@ class MarchRun:
         self.window = self._relaxing()
         self.seconds = 0.0
 
-    @property
-    def at_rest(self) -> float:
-        """The most that slip must overcome to begin, over the mean normal load; with memory, of the slowest slip."""
-        return self.heaviest * friction_at_rest(self.law)
-
-    @property
-    def slipping(self) -> float:
-        """The largest friction of slow slip, over the mean normal load."""
-        return self.heaviest * self.law.sliding_friction(0.0) or self.at_rest
-
-    @property
-    def follows_the_drive(self) -> bool:
-        """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
-        if self.law.memory_kind != "none" or self.scene.bends:
-            return False
-        mass = self.mass
-        damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
-        heaviest = self.heaviest * mass.normal_load
-        return heaviest * self.law.steepest_fall() < damping and not self.scene.undriven
-
-    @property
-    def converges(self) -> bool:
-        """Whether that motion is the same from every start: on a belt at rest the mass may stay where it stops."""
-        return self.follows_the_drive and self.scene.belt_speed != 0.0
-
-    @property
-    def has_corners(self) -> bool:
-        """Whether a memory's rate may jump while slip does not turn round: by axis, at yield, in unloading."""
-        return self.law.rate_jumps(1 if self.straight else 2)
-
     def place(self, start: Initial | None) -> MarchState:
         """A start as a state; None for the friction-free orbit."""
         if start is None:
@@ -164,15 +122,6 @@ class MarchRun:
             other = self._read(longer, pace, self._least(longer, stride, 2.0 * pace.enough))
             run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
         return run
-
-    def means_of_laps(self, run: MarchResult, laps: int) -> Floats:
-        """The mean friction along x1 of each of so many laps [laps], from the end of a run on; of laps that differ in
-        length, moved so that their plain mean is that over time."""
-        way = self._way(run.pace)._replace(most=laps, stride=laps)
-        each = self._marched(run.pace, way, run.place).laps
-        mean, lengths = interpreted(mean_friction), each.duration
-        whole = mean(float(each.impulse.real.sum()), float(lengths.sum()))
-        return np.asarray(whole + (mean(each.impulse.real, lengths) - whole) * lengths / lengths.mean())
 
     def track(self, run: MarchResult, laps: int) -> Orbit:
         """So many laps, from the end of a run that settled."""
@@ -233,7 +182,6 @@ class MarchRun:
             most=pace.most,
             stride=1,
             rate=pace.rate,
-            near=self._near(pace),
             work=pace.work,
             window=self.window,
             room=0,
@@ -243,26 +191,6 @@ class MarchRun:
             lightest=self.lightest,
         )
 
-    def _near(self, pace: Resolution) -> float:
-        """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
-        if self.facts.adaptive:
-            return 3.0 * pace.width
-        force = self.heaviest * self.mass.normal_load * self.law.sliding_friction(0.0)
-        blind = self.facts.is_blind(self.law.memory_kind)
-        return 2.0 * force * self.drive_period / pace.steps if blind else 0.0
-
-    def _creeping(self, pace: Resolution, march: MarchHistory) -> float:
-        """The belt carries a mass that sticks; one that creeps as fast as the belt moves stays where it is.
-
-        Chatter of a stepper that is blind to stick is erratic: its creep is trusted at an eighth of that alone.
-        """
-        trusted = 1.0 if self.facts.adaptive else 8.0
-        near, belt_speed = self._near(pace), abs(self.scene.belt_speed)
-        if trusted * near < belt_speed or march.trace.lingered == 0.0:
-            return 0.0
-        share = float(march.trace.lingered / march.laps.duration[-1])
-        return min(1.0, share * (1.0 + near / belt_speed)) if belt_speed > 0.0 else 1.0
-
     def _read(self, march: MarchHistory, pace: Resolution, stride: int) -> MarchResult:
         laps = len(march.laps.impulse)
         window = min(self.window * stride if march.progress.verdict == STALLED else stride, laps)
@@ -271,28 +199,20 @@ class MarchRun:
         each = interpreted(mean_friction)(march.laps.impulse[-window:].real, march.laps.duration[-window:])
         low, high = float(each.min()), float(each.max())
         drift = self._apart(march, laps, laps - stride)
-        stiff = march.trace.crossings > 0 and pace.steps < self.through_rest
+        stiff = march.trace.reverses and pace.steps < self.through_rest
         return MarchResult(
             pace=pace,
             place=MarchState(complex(march.laps.x[-1]), complex(march.laps.v[-1]), march.laps.z[-1]),
             mean=mean,
-            closing=self._closing(march, drift, high - low),
             low=low,
             high=high,
             laps=laps,
             period=time / window * stride,
-            stuck=float(march.laps.stuck[-1]),
             verdict=TOO_STIFF if stiff else int(march.progress.verdict),
-            dip=float(march.trace.dip),
-            bend=float(march.trace.bend),
-            crossings=int(march.trace.crossings) * stride,
-            flips=int(march.trace.flips),
             rate=float(march.rate),
-            creeping=self._creeping(pace, march),
             steps=int(march.progress.steps),
             stride=stride,
             drift=drift,
-            turn=float(march.trace.turn),
             met=float(march.trace.met),
         )
 
@@ -301,42 +221,6 @@ class MarchRun:
         last = len(march.laps.impulse)
         whole = [laps for laps in range(1, stride) if stride % laps == 0]
         return next((laps for laps in whole if self._apart(march, last, last - laps) <= within), stride)
-
-    def _closing(self, march: MarchHistory, drift: float, spread: float) -> float:
-        """What the mean may still change by: integrate the motion along x1 over a period, as shooting does.
-
-        The friction impulses of two orbits differ by the change of dv + damping*dx, which the gap is, plus the
-        integral of dx, which their distance bounds.
-        """
-        if march.progress.verdict == RESTING:
-            return 1e-12 + self._from_sliding(march)
-        if march.progress.verdict == STALLED:
-            led = self._apart(march, len(march.laps.impulse), len(march.laps.impulse) - self.window)
-            return spread + 2.0 * led / self.mass.normal_load
-        lasting = self.mass.relaxing.lasting if self.mass.relaxing else 0.0
-        ends = (1.0 + self.mass.damping + lasting * (1.0 + self._slowest)) * drift
-        doubt = (
-            2.0 if self.law.memory_kind == "none" else 4.0
-        )  # with memory, orbits may part before they meet
-        left = doubt * float(march.progress.distance + ends / self.lap) / self.mass.normal_load
-        return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
-
-    def _only_slides(self, march: MarchHistory) -> bool:
-        """Whether friction must end at one number: slip on a line that never turns, a law of one sliding friction."""
-        one = self.law.memory_kind == "bristle" and self.law.constant_sliding_friction()
-        reverses = march.trace.crossings > 0 or march.trace.flips > 0
-        return one and self.straight and not (self.scene.undriven or reverses or self.scene.constant_contact)
-
-    def _from_sliding(self, march: MarchHistory) -> float:
-        """How far friction is from that of steady sliding, where bristles go under slip that does not turn.
-
-        Their way there may be algebraic, or slower than any swing of the mass can tell.
-        """
-        speed = abs(self.scene.belt_speed)
-        if self.law.memory_kind != "bristle" or speed == 0.0:
-            return 0.0
-        mean = interpreted(mean_friction)(march.laps.impulse[-1].real, float(march.laps.duration[-1]))
-        return abs(abs(mean) - self.law.sliding_friction(speed))
 
     def _apart(self, march: MarchHistory, a: int, b: int) -> float:
         b = max(b, 0)

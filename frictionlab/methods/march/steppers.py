@@ -14,16 +14,16 @@ import numpy as np
 
 from frictionlab.compile.stack import count_of
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.march.adapters import Exponential, Moreau, Rk4, Sdirk2, Smoothed, Stepper
-from frictionlab.motion.contact import ARCTAN, SQUARE_ROOT, TANH, friction_of, rate_of
-from frictionlab.motion.steppers import exponential, rk4
+from frictionlab.methods.march.adapters import Moreau, Rk4, Sdirk2, Smoothed, Stepper
+from frictionlab.motion.contact import ARCTAN, TANH, friction_of, rate_of
+from frictionlab.motion.steppers import rk4
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
-StepperName = Literal["moreau", "rk4", "smoothed", "exponential", "sdirk2"]
-SMOOTHINGS = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
+StepperName = Literal["moreau", "rk4", "smoothed", "sdirk2"]
+SMOOTHINGS = {"tanh": TANH, "arctan": ARCTAN}
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Resolution:
 class StepperFacts(NamedTuple):
     """What is known of a stepper.
 
-    kinds: of memory that it steps. keys: of a study, beside ``periods``. order: on smooth motion, by theta.
+    kinds: of memory that it steps. keys: of a study, beside ``periods``.
     record: its numbers in a run. held: largest stable step times frequency of a mass held by its contact. decay:
     largest stable step times decay rate of the memory, infinite where that does not limit steps. bears_jumps: whether
     rates may jump at yield. gridded: whether it meets loads at half steps alone. adaptive: whether it chooses its
@@ -54,7 +54,6 @@ class StepperFacts(NamedTuple):
 
     kinds: tuple[str, ...]
     keys: tuple[str, ...]
-    order: Callable[[float], int]
     record: Callable[[Resolution], Stepper]
     held: float = math.inf
     decay: float = math.inf
@@ -68,27 +67,18 @@ class StepperFacts(NamedTuple):
         """Whether the decay of the memory limits steps, too."""
         return math.isfinite(self.decay)
 
-    def is_blind(self, kind: str) -> bool:
-        """Whether it steps over the rest of a law with this kind of memory, which is then chatter about rest."""
-        return kind == "none" and not (self.sticks or self.adaptive)
-
 
 STEPPERS: dict[StepperName, StepperFacts] = {
     "moreau": StepperFacts(
         ("none",),
         ("theta", "steps"),
-        lambda theta: 2 if theta == 0.5 else 1,
         lambda pace: Moreau(pace.theta),
         gridded=True,
         sticks=True,
     ),
-    "exponential": StepperFacts(
-        ("bristle",), ("steps",), lambda _: 2, lambda _: Exponential(), held=exponential.DECAY, gridded=True
-    ),
     "rk4": StepperFacts(
         ("none", "bristle", "deflections", "scalars"),
         ("steps",),
-        lambda _: 4,
         lambda _: Rk4(),
         held=rk4.DECAY,
         decay=rk4.DECAY,
@@ -97,11 +87,10 @@ STEPPERS: dict[StepperName, StepperFacts] = {
     "smoothed": StepperFacts(
         ("none",),
         ("width", "smoothing"),
-        lambda _: 8,
         lambda pace: Smoothed(pace.width, SMOOTHINGS[pace.smoothing], pace.accuracy),
         adaptive=True,
     ),
-    "sdirk2": StepperFacts(("bristle",), ("steps",), lambda _: 2, lambda _: Sdirk2(), bears_jumps=False),
+    "sdirk2": StepperFacts(("bristle",), ("steps",), lambda _: Sdirk2(), bears_jumps=False),
 }
 """Of each kind of memory, the first that steps it is taken where none is named."""
 
@@ -160,13 +149,6 @@ def usual_slip(scene: Scene) -> float:
 
 
 # --- the contact --------------------------------------------------------------------------------------------------
-
-
-def friction_falls(law: FrictionLaw) -> bool:
-    """Whether steady sliding friction decreases with speed anywhere."""
-    speeds = np.geomspace(1e-9, 1e9, 721)
-    friction = [law.sliding_friction(speed) for speed in [0.0, *speeds.tolist()]]
-    return bool((np.diff(friction) < -1e-12 * friction[0]).any())
 
 
 def steady_memory(law: Any, speed: float) -> Floats:

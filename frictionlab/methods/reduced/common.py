@@ -133,8 +133,13 @@ def full_means(scene: Scene, law: FrictionLaw, belt_speeds: Floats) -> Answers:
         scene.model_copy(update={"initial": None, "dimensional": None, "belt_speed": speed})
         for speed in belt_speeds.tolist()
     ]
-    method = Exact() if not any(Exact().refusals(free, law)) else Shooting()
-    return method.solve(free, law, TOLERANCE * law.sliding_friction(1.0))
+    return full_answers(free, law)
+
+
+def full_answers(scenes: Sequence[Scene], law: FrictionLaw) -> Answers:
+    """Answer scenes that differ in belt speed alone by the exact method where it takes them, else by shooting."""
+    method = Exact() if not any(Exact().refusals(scenes, law)) else Shooting()
+    return method.solve(scenes, law, TOLERANCE * law.sliding_friction(1.0))
 
 
 def _carried(scene: Scene, orbit: Orbit | None) -> Orbit | None:

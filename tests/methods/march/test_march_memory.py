@@ -104,15 +104,6 @@ def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     assert agree(solve(March(), scene, soft, 1e-3), solve(March(steps=32 * fewest), scene, soft, 1e-4))
 
 
-@deep("seconds of steps")
-def test_errors_of_given_steps_hold_what_finer_steps_change():
-    scene = driven(1.0)
-    fine = solve(March(), scene, THREE, 1e-5)
-
-    for steps in (4096, 8192):
-        assert agree(solve(March(steps=steps), scene, THREE, 1e-2), fine)
-
-
 @pytest.mark.parametrize(
     ("scene", "keys", "law", "said"),
     [

@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 from answered import with_columns
-from draws_of_every_kind import every_kind
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from memory_laws import elements
 from profiles import DEEP, deep
@@ -17,7 +16,6 @@ from strategies import sizes
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
@@ -52,7 +50,6 @@ STEPPERS = {
     "moreau, theta 1": ({"steps": 100, "theta": 1}, COULOMB),
     "rk4": ({"stepper": "rk4", "steps": 200}, COULOMB),
     "smoothed": ({"stepper": "smoothed", "width": 0.2}, COULOMB),
-    "exponential": ({"steps": 100}, DAHL),
     "rk4 of a bristle": ({"stepper": "rk4", "steps": 100}, DAHL),
     "sdirk2": ({"stepper": "sdirk2", "steps": 100}, DAHL),
 }
@@ -113,7 +110,7 @@ def test_columns_of_an_orbit_are_those_of_shooting():
 @given(first=sizes(1e-3, 1.0), lasts=sizes(1e-4, 10.0), refined=st.sampled_from([1, 2, 16]))
 def test_equal_steps_fill_a_piece_and_halved_ones_halve_every_step_of_it(first, lasts, refined):
     count = interpreted(steps_in)
-    plain = MarchSettings(2.0, True, 100, 9.0, first, 0.5, first, 0.0, 1, 1, 0.0, 0.0, 1, 1, 0, refined=1)
+    plain = MarchSettings(2.0, True, 100, 9.0, first, 0.5, first, 0.0, 1, 1, 0.0, 1, 1, 0, refined=1)
     halved = plain._replace(first=first / refined, refined=refined)
     assert count(halved, lasts) == refined * count(plain, lasts)
     assert lasts / count(plain, lasts) <= first * (1.0 + 1e-8)
@@ -136,7 +133,6 @@ FOLLOWING = LuGre(mu_kinetic=0.2, presliding_length=3.0, viscosity=0.01)
         ({}, RISING, 2, 20),
         ({"theta": 1}, RISING, 1, 80),
         pytest.param({"stepper": "rk4"}, RISING, 4, 20, marks=compiling),
-        pytest.param({}, FOLLOWING, 2, 20, marks=compiling),
         pytest.param({"stepper": "rk4"}, FOLLOWING, 4, 40, marks=compiling),
         pytest.param({"stepper": "sdirk2"}, FOLLOWING, 2, 20, marks=compiling),
     ],
@@ -170,7 +166,7 @@ def test_a_stuck_mass_leaves_stick_where_the_velocity_of_the_belt_jumps():
 def test_a_mass_that_never_slips_on_a_vibrating_belt_has_a_range_of_means():
     keys = LINE | {"belt_speed": 0.0, "belt_vibration": {"velocity_amplitude": 0.3, "frequency": 0.5}}
     found = with_columns(March(), [Scene(**keys)], COULOMB, 1e-3)
-    expected = with_columns(Shooting(), [Scene(**keys)], COULOMB, 1e-6)
+    expected = with_columns(Shooting(), [Scene(**keys)], COULOMB, 1e-9)
     assert found.status == expected.status == ["not_unique"]
     for name in ("mean_low", "mean_high"):
         assert found.columns[name] == pytest.approx(expected.columns[name], abs=1e-9)
@@ -188,7 +184,7 @@ def pressed(contact, amplitude=0.6):
 @pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, presliding_length=1.0)], ids=["dahl", "jenkins"])
 def test_steppers_agree_on_a_mass_held_by_a_contact_of_constant_stiffness(law):
     keys = LINE | {"drive": DRIVE} | pressed("constant")
-    steppers = ["exponential", "rk4"] + (["sdirk2"] if law is DAHL and DEEP else [])
+    steppers = ["rk4"] + (["sdirk2"] if law is DAHL and DEEP else [])
     found = [mean_and_error(solve(keys, law, 1e-4, stepper=stepper, steps=200)) for stepper in steppers]
     for mean, error in found:
         assert abs(mean - found[0][0]) <= error + found[0][1]
@@ -201,27 +197,3 @@ def test_laws_of_several_memories_keep_no_constant_stiffness():
     assert said is not None
     assert "give per_load" in said
     assert March().refusal(scene, DAHL) is None
-
-
-# --- random scenes ------------------------------------------------------------------------------------------------
-
-KINDS = {
-    "coulomb": Coulomb,
-    "stribeck": Stribeck,
-    "dahl": Dahl,
-    "lugre": LuGre,
-    "elasto-plastic": ElastoPlastic,
-}
-
-
-@deep("a kernel for every law and kind of scene")
-@given(drawn=every_kind())
-def test_the_error_covers_scenes_of_every_kind(drawn):
-    keys, told = drawn
-    scene, law = Scene(**keys), KINDS[told["kind"]](**{name: told[name] for name in told if name != "kind"})
-    method, shooting = March(steps=128), Shooting()
-    assume(method.refusal(scene, law) is None and shooting.refusal(scene, law) is None)
-    found, expected = (each.solve([scene], law, 1e-3) for each in (method, shooting))
-    if found.status == expected.status == ["ok"]:
-        off = abs(float(found.mean[0].real) - float(expected.mean[0].real))
-        assert off <= found.error[0] + expected.error[0]

@@ -16,6 +16,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit, corners
 from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS, Curve
+from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.plateau import GOLDEN_SHARE
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, along_the_belt, largest_modulus
 from frictionlab.methods.shooting.leaps import Leaper
@@ -46,6 +47,10 @@ ONE_BRANCH = 1e-3
 Belt speed moves such an orbit."""
 FEWEST, MOST = 200, 20_000
 """Smallest and largest number of periods for which a start is followed."""
+LONGEST_FREE_PERIOD = 256
+"""Longest period of the free mass [drive periods] at which a motion may be said not to repeat.
+
+If it is longer, a motion is not followed for long enough to tell."""
 DECAYS, CLIMBS = 30.0, 2.0
 """Time constants after which nothing is left of a start, and distance that a belt carries a mass to its mean.
 
@@ -447,7 +452,7 @@ class FollowedStarts:
         self.reached: list[Attractor] = []
         self.seconds = 0.0
         self._starts: list[Initial | None] = []
-        self._fewest = MOST
+        self._lengths: list[int] = []
 
     @property
     def ended(self) -> list[Attractor]:
@@ -473,14 +478,15 @@ class FollowedStarts:
         """Record of the starts if all of them ended in one state."""
         at = [self._problem.place(self._scene.belt_speed, start) for start in self._starts]
         carried = len(self.reached) - len(at)
-        return Trial.of(at, self._problem.mass.stiffness, self._fewest, carried)
+        fewest = min(
+            (each for each in self._lengths if each > 1), default=MOST
+        )  # one starts on the orbit itself
+        return Trial.of(at, self._problem.mass.stiffness, fewest, carried)
 
     def follow(self, start: Initial | None) -> None:
         """Follow a start to its end, or until it is sure to end on the first known orbit of one period."""
         self._starts.append(start)
-        periods = self.carry(self._problem.state_at(self._scene.belt_speed, start))
-        if periods > 1:  # a start on the orbit itself is there at once
-            self._fewest = min(self._fewest, periods)
+        self._lengths.append(self.carry(self._problem.state_at(self._scene.belt_speed, start)))
 
     def carry(self, state: Floats) -> int:
         """Follow a state in the same way, for example one of another belt speed.
@@ -488,32 +494,54 @@ class FollowedStarts:
         Return the number of periods for which it was followed.
         """
         first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
-        known = None if first is None else first.known
-        soon = min(self._patience, FEWEST)
-        way = self._problem.carried(self._scene.belt_speed, state, soon, known)
+        leaper = Leaper(DrivePeriods(self._problem, self._scene), state)
+        asked, more, slow = min(FEWEST, self._patience), leaper.fewest, False
+        way = self._problem.carried(self._scene.belt_speed, state, asked, first.known if first else None)
+        while (end := self._end_of(way, first)) is None and self._may_go_on(way, asked):
+            leaper.state, before, asked = way.state, leaper.periods, len(way.means)
+            end = self._led(leaper)
+            if end is not None:
+                break
+            slow = slow or way.period > 0
+            more = min(leaper.fewest if leaper.periods > before else 2 * more, self._patience - asked)
+            way, asked = way.then(self._stretch(leaper.state, more, first, slow)), asked + more
+        if end is None:
+            end, _ = orbit_at_the_end(self._problem, self._scene, way._replace(period=0), leaper.periods)
+            self.known = [*self.known, end]
         self.seconds += way.seconds
-        if way.period == 0 and len(way.means) == soon < self._patience:
-            led, periods = self._led(way.state)
-            if led is not None:
-                self.reached.append(led)
-                return soon + periods
-            later = self._problem.carried(self._scene.belt_speed, way.state, self._patience - soon, known)
-            self.seconds += later.seconds
-            way = way.then(later)
-        beside = (one for one in self.known if ends_on(way.state, way.period, one))
-        found = first if way.period == ARRIVED else next(beside, None)
+        self.reached.append(end)
+        return len(way.means) + leaper.periods
+
+    def _stretch(self, state: Floats, periods: int, first: Attractor | None, slow: bool) -> Transient:
+        """Follow a motion for some periods, a slow one for all of them although it seems to repeat."""
+        speed, problem = self._scene.belt_speed, self._problem
+        if slow:
+            return problem.followed_on(speed, state, periods, MAP_KINDS[problem.kind].rough)
+        return problem.carried(speed, state, periods, first.known if first else None)
+
+    def _may_go_on(self, way: Transient, asked: int) -> bool:
+        """Check that a motion was followed for as long as was asked, and that this is not yet the longest time."""
+        return len(way.means) < self._patience and (way.period > 0 or len(way.means) == asked)
+
+    def _end_of(self, way: Transient, first: Attractor | None) -> Attractor | None:
+        """Return the destination of a motion; None if it does not repeat.
+
+        A slow motion repeats to rounding while it is still on its way, far from the orbit closed there.
+        """
+        if way.period <= 0:
+            return first if way.period == ARRIVED else None
+        found = next((one for one in self.known if ends_on(way.state, way.period, one)), None)
         if found is None:
             found, more = orbit_at_the_end(self._problem, self._scene, way)
             self.seconds += more
-            # A slow motion repeats to rounding while it is still on its way: the orbit closed there may be known.
             if not any(found.agrees(one) for one in self.known):
                 self.known = [*self.known, found]
-        self.reached.append(found)
-        return len(way.means)
+        away = float(np.linalg.norm(found.points - way.state, axis=1).min())
+        near = away <= NEARLY_REPEATED * float(np.linalg.norm(way.state))
+        return found if near or found.curve is None else None
 
-    def _led(self, state: Floats) -> tuple[Attractor | None, int]:
-        """Return the closed one-period orbit to which leaps lead from a state, or None, and the periods."""
-        leaper = Leaper(DrivePeriods(self._problem, self._scene), state)
+    def _led(self, leaper: Leaper) -> Attractor | None:
+        """Return the closed one-period orbit to which leaps lead, or None."""
         orbits: dict[int, Attractor] = {}
 
         def known() -> list[KnownOrbit]:
@@ -522,7 +550,7 @@ class FollowedStarts:
             return [one.known for one in repeating]
 
         found = leaper.lead(known, self._close_beside)
-        return (None, 0) if found is None else (orbits[id(found)], leaper.periods)
+        return None if found is None else orbits[id(found)]
 
     def _close_beside(self, state: Floats) -> None:
         """Add the closed orbit of one period beside a state to those known."""
@@ -596,9 +624,14 @@ def found_state(
     return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from, share)
 
 
-def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
-    """Return the orbit at the end of a transient, or the motion that never repeats, and the kernel time."""
-    seconds = 0.0
+def orbit_at_the_end(
+    problem: PeriodicProblem, scene: Scene, way: Transient, led: int = 0
+) -> tuple[Attractor, float]:
+    """Return the orbit at the end of a transient, or the motion that never repeats, and the kernel time.
+
+    led: number of periods over which leaps led the motion in addition.
+    """
+    seconds, followed = 0.0, len(way.means)
     if way.period > 0:
         curve, means, points, seconds = _shortest(problem, scene, way)
         orbit = closed_orbit(curve, means, points)
@@ -606,12 +639,13 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
             return orbit, seconds
         if curve.closed.found[0] and undamped(scene) and multiplier(curve) < 1.0 + NO_GROWTH:
             ends = float(means.min()), float(means.max())
-            return Attractor(len(way.means), 0, *ends, None, points, neutral=True), seconds
-    last = way.means[len(way.means) // 2 :]
+            return Attractor(followed, 0, *ends, None, points, neutral=True), seconds
+    last = way.means[followed // 2 :]
     low, high = float(last.min()), float(last.max())
-    stopped, points = way.period == 0 and len(way.means) < FEWEST, way.states[-POINTS_KEPT:]
-    lost = stopped and problem.runs_away(way.state)
-    return Attractor(len(way.means), 0, low, high, None, points, stopped=stopped, lost=lost), seconds
+    free_period = problem.mass.frequency / math.sqrt(problem.mass.stiffness) / problem.common
+    stopped = way.period == 0 and (followed < FEWEST or free_period > LONGEST_FREE_PERIOD)
+    lost, points = stopped and problem.runs_away(way.state), way.states[-POINTS_KEPT:]
+    return Attractor(followed + led, 0, low, high, None, points, stopped=stopped, lost=lost), seconds
 
 
 def undamped(scene: Scene) -> bool:
@@ -704,11 +738,9 @@ def left_unfinished(reached: Sequence[Attractor]) -> str:
     if lost:
         return f"{lost} of {len(reached)} starts run away: far out the spring along the belt pushes outward"
     told = f"{len(stopped)} of {len(reached)} starts were followed for {max(stopped, default=0)} drive periods only"
-    return (
-        f"{told}: that took hundreds of thousands of steps, for friction near rest is steep"
-        if stopped
-        else ""
-    )
+    if stopped and min(stopped) < FEWEST:
+        return f"{told}: that took hundreds of thousands of steps, for friction near rest is steep"
+    return f"{told}, and had not ended" if stopped else ""
 
 
 def _describe_state(orbit: Destination, digits: int) -> str:

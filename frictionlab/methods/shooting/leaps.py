@@ -22,7 +22,7 @@ import numpy as np
 from frictionlab.methods.periodic.attraction import KnownOrbit
 from frictionlab.values.quantities import Floats
 
-MOST_MAPS = 1000
+MOST_MAPS = 5000
 """Number of true maps after which no further leap is tried."""
 SHARE, FLOOR = 0.02, 1e-9
 """Largest error of a leap: SHARE of the distance that it leads, plus FLOOR of the size of the state."""
@@ -73,7 +73,7 @@ class Leaper:
     maps: int = 0
 
     def __post_init__(self) -> None:
-        self._length = 2 * self._fewest
+        self._length = 2 * self.fewest
         self._size = self.section.size(self.state)
 
     def lead(
@@ -83,7 +83,7 @@ class Leaper:
 
         known: orbits known so far, to which ``close_beside`` may add the one beside a state.
         """
-        set_out, tried = self.state, math.inf
+        set_out, tried, self._length = self.state, math.inf, 2 * self.fewest
         while (newton := self.leap()) is not None:
             size, left = self.section.size(self.state), float(np.linalg.norm(newton))
             if left < CLOSED_FROM * size and left < 0.3 * tried:
@@ -97,7 +97,7 @@ class Leaper:
         return None
 
     @property
-    def _fewest(self) -> int:
+    def fewest(self) -> int:
         """Number of periods of the shortest leap: it costs no more than as many true maps."""
         return self.state.size + 3
 
@@ -109,7 +109,7 @@ class Leaper:
         base = self._mapped(self.state[None])[0] - self.state
         matrix = self._derivative()
         length = self._within_growth(matrix)
-        while length >= self._fewest and np.isfinite(matrix).all() and self.maps < MOST_MAPS:
+        while length >= self.fewest and np.isfinite(matrix).all() and self.maps < MOST_MAPS:
             moved, error, defect = self._tried(matrix, base, length)
             allowed = SHARE * float(np.linalg.norm(moved)) + FLOOR * self._size
             ratio = error / allowed if math.isfinite(error) else math.inf

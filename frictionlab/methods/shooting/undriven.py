@@ -220,7 +220,8 @@ class Undriven:
             left = apart if apart <= NOISE * section.noise else apart * was / max(was - apart, 1e-300)
             known = any(one.is_beside(states[-1], left) for one in way.cycles if back % one.passages == 0)
             # closing is costly: again only where it is much nearer, and not next to a known cycle
-            if not known and left < min(near, 0.25 * way.tried.get(back, math.inf)):
+            may = self._may_close(way) or apart <= NOISE * section.noise
+            if may and not known and left < min(near, 0.25 * way.tried.get(back, math.inf)):
                 way.tried[back] = left
                 found = self._close(section, way, states[-1], back)
                 if found is not None:
@@ -228,16 +229,18 @@ class Undriven:
         return None
 
     def _close(self, section: Passages, way: Way, state: Floats, passages: int = 1) -> Cycle | None:
-        """Close the cycle beside a state, if it is new; none where closing has taken more than following."""
+        """Close the cycle beside a state, if it is new."""
         before = self.effort.work
-        if way.closing > max(0.5 * before, MOST_CLOSING):
-            return None
         found = close_shortest(section, state, passages, self.tolerance)
         way.closing += self.effort.work - before
         if found is None or any(other.has(found.state) for other in way.cycles):
             return None
         way.cycles.append(found)
         return found
+
+    def _may_close(self, way: Way) -> bool:
+        """Check that closing has not taken more than following."""
+        return way.closing <= max(0.5 * self.effort.work, MOST_CLOSING)
 
     def _led(self, section: Passages, way: Way) -> tuple[Cycle | None, Floats]:
         """Lead a motion by leaps: the cycle of one passage where they end, or none, and the state that they reach."""
@@ -248,7 +251,7 @@ class Undriven:
             return list(orbits.values())
 
         leaper = Leaper(section, way.passages[-1].state)
-        found = leaper.lead(known, lambda state: self._close(section, way, state))
+        found = leaper.lead(known, lambda state: self._may_close(way) and self._close(section, way, state))
         cycle = next((way.cycles[place] for place, orbit in orbits.items() if orbit is found), None)
         return cycle, leaper.state
 

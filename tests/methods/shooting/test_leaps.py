@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from profiles import deep, some
+from scipy.integrate import quad
 
 import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem
@@ -81,6 +83,53 @@ def test_the_same_velocity_at_other_frequencies_has_one_state(
 
     assert state.status == "ok"
     assert state.error < 1e-7
+
+
+QUICK_LUGRE = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=0.1, presliding_length=1e-3, damping=0.1)
+QUICK_STRIBECK = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=0.1)
+
+
+@pytest.mark.parametrize("frequency", [1e3, 1e5])
+@pytest.mark.parametrize("law", [QUICK_STRIBECK, QUICK_LUGRE], ids=["stribeck", "lugre"])
+def test_drives_far_quicker_than_the_body_leave_no_start_behind(
+    law: fl.FrictionLaw, frequency: float
+) -> None:
+    """Some starts swing far out first, in and out of slip that reverses: leaps there are short."""
+    drive = fl.Drive(amplitude=1e-2 * frequency, frequency=frequency)
+    state = fl.steady_state(fl.Scene(damping_ratio=0.1, normal_load=1, belt_speed=1e-3, drive=drive), law)
+
+    assert (state.status, state.unique) == ("ok", "tested")
+    assert state.error < 1e-8
+
+
+@deep("thousands of periods")
+@given(
+    frequency=st.floats(1.0, 5.0).map(lambda power: 10.0**power),
+    swing=st.floats(-2.5, 0.5).map(lambda power: 10.0**power),
+    share=st.floats(0.01, 0.95),
+    width=st.floats(-1.0, 1.5).map(lambda power: 10.0**power),
+    damping=st.floats(-2.5, -0.5).map(lambda power: 10.0**power),
+    pressed=st.floats(-4.0, -1.0).map(lambda power: 10.0**power),
+)
+def test_quick_drives_leave_the_mean_over_the_slip_that_they_make(
+    frequency: float, swing: float, share: float, width: float, damping: float, pressed: float
+) -> None:
+    """Friction moves the mass by its impulse over a period: the quadrature leaves that out, and the spring."""
+    law = fl.Stribeck(mu_kinetic=0.2, mu_static=0.3, stribeck_speed=width * swing)
+    scene = fl.Scene(
+        damping_ratio=damping,
+        normal_load=pressed * swing * frequency,
+        belt_speed=share * swing,
+        drive=fl.Drive(amplitude=swing * frequency, frequency=frequency),
+    )
+    state, turned = fl.steady_state(scene, law), math.acos(-share)
+    friction = lambda angle: law.sliding_friction(swing * abs(share + math.cos(angle)))  # noqa: E731
+    mean = (quad(friction, 0.0, turned)[0] - quad(friction, turned, math.pi)[0]) / math.pi
+
+    if state.status == "ok":
+        assert abs(state.mean_friction - mean) <= 0.3 * pressed + frequency**-2 + state.error
+    else:  # friction that falls steeply feeds a slow oscillation
+        assert re.search("not repeat|had not ended", state.reason)
 
 
 # --- against plain periods ---

@@ -136,13 +136,13 @@ def _wave(wave: Wave, tau: Floats) -> Floats:
 
 
 def highest(values: Floats) -> float:
-    """Return the largest value; if it is inside, the top of the parabola through it and its neighbours."""
-    at = int(np.argmax(values))
-    if not 0 < at < len(values) - 1:
-        return float(values[at])
-    left, top, right = values[at - 1 : at + 2]
-    bend = left - 2.0 * top + right
-    return float(top - 0.125 * (right - left) ** 2 / bend) if bend < 0.0 else float(top)
+    """Return the largest value: the top of the parabola through three neighbours if it is between them."""
+    at = min(max(int(np.argmax(values)), 1), len(values) - 2)
+    left, middle, right = values[at - 1 : at + 2]
+    bend, rise = left - 2.0 * middle + right, 0.5 * (right - left)
+    if bend < 0.0 and abs(rise) <= -bend:
+        return float(middle - 0.5 * rise**2 / bend)
+    return float(values.max())
 
 
 def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: float) -> complex:

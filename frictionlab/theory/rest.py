@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.signals import Signal
+from frictionlab.scene.signals import Signal, highest
 from frictionlab.theory.piecewise import PieceNumbers, piecewise
 from frictionlab.values.quantities import Floats
 
@@ -88,17 +88,20 @@ def resting_range(scene: Scene, law: FrictionLaw, side: float = 1.0) -> float:
     held = _held_with_the_belt(scene)
     if held is None:
         return -math.inf
-    return _largest_spring_force(side * held.force, held.pressed * friction_at_rest(law)) / held.mean
+    force, limit = side * held.force, held.pressed * friction_at_rest(law)
+    if force.imag.any():
+        return _largest_spring_force(force, limit) / held.mean
+    pieces = np.flatnonzero(np.diff(held.k)) + 1
+    upper = -max(map(highest, np.split(-force.real - limit, pieces)))
+    lower = max(map(highest, np.split(force.real - limit, pieces)))
+    return upper / held.mean if lower <= upper else -math.inf
 
 
 def _largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
-    """Return the largest spring force along x1 that friction balances together with the load.
+    """Return the largest spring force along x1 that friction balances together with the load, in the plane.
 
     Friction may reach the limit.
     """
-    if not load.imag.any():
-        upper, lower = float((load.real + limit).min()), float((load.real - limit).max())
-        return upper if lower <= upper else -math.inf
     most = float(limit.max())
     low, high, best = -most, most, -math.inf
     for _ in range(6):
@@ -117,7 +120,7 @@ def _largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
 class _Held(NamedTuple):
     """Force of friction that keeps the mass at rest on the belt, x1 + i x2, and the normal load.
 
-    Both are given over a period.
+    Both are given over a period, at times in the pieces k.
 
     mean: of the normal load.
     """
@@ -125,6 +128,7 @@ class _Held(NamedTuple):
     force: NDArray[np.complex128]
     pressed: Floats
     mean: float
+    k: PieceNumbers
 
 
 def _held_with_the_belt(scene: Scene) -> _Held | None:
@@ -134,7 +138,10 @@ def _held_with_the_belt(scene: Scene) -> _Held | None:
         turn = np.exp(1j * np.linspace(0.0, np.pi, 721))  # the other half of the ellipse follows by symmetry
         load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag
         return _Held(
-            np.concatenate([load, -load]), np.full(2 * len(load), mass.normal_load), mass.normal_load
+            np.concatenate([load, -load]),
+            np.full(2 * len(load), mass.normal_load),
+            mass.normal_load,
+            np.repeat([0, 1], len(load)),
         )
     signals = scene.signals()
     edges = signals.edges()
@@ -147,7 +154,7 @@ def _held_with_the_belt(scene: Scene) -> _Held | None:
     if along is None or across is None:
         return None
     pressed = piecewise(signals.normal_load, edges, mass.normal_load).at(times.tau, times.k)[0]
-    return _Held(along + 1j * across, pressed, mass.normal_load)
+    return _Held(along + 1j * across, pressed, mass.normal_load, times.k)
 
 
 class _Times(NamedTuple):

@@ -170,3 +170,14 @@ def test_a_mass_that_rides_on_its_belt_has_more_than_one_motion() -> None:
     assert not is_unique(still, LAW)
     assert np.ptp(path[-1, 0]) > 0.1  # three starts, three places
     assert energies(path)[-1].max() == pytest.approx(energies(path)[-400].max(), rel=1e-6)
+
+
+@pytest.mark.parametrize("phase", [0.0, 17.3, 45.0, 90.06])
+def test_a_range_of_rest_does_not_hang_on_the_phase(phase: float) -> None:
+    """A belt that vibrates by .6 sin(tau/2) takes the mass along: spring and inertia take .45, the dashpot .06."""
+    vibration = {"velocity_amplitude": 0.3, "frequency": 0.5, "phase": phase}
+    shaken = scene(drive={"amplitude": 0.7, "frequency": 0.5, "phase": phase})
+    taken = scene(drive=None, belt_vibration=vibration)
+
+    assert resting_range(shaken, LAW) == pytest.approx(0.15, abs=1e-11)
+    assert resting_range(taken, LAW) == pytest.approx(0.5 - math.hypot(0.45, 0.06) / 2.0, abs=1e-11)

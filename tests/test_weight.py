@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1449,
     "curves": 841,
     "laws": 686,
-    "methods": 11025,
+    "methods": 10816,
     "motion": 4851,
     "report": 1772,
     "runner": 4301,
@@ -23,11 +23,11 @@ LIMITS = {
     "testing": 1491,
     "theory": 918,
     "values": 1380,
-    "tests": 29336,
+    "tests": 29301,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 349
+MOST_FILES = 348
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

@@ -109,12 +109,6 @@ class ModelWord(StrEnum):
         "one harmonic of bristles",
         "one harmonic of x1' and of the bristles' friction balanced, friction averaged over the harmonic slip",
     )
-    SWITCHED = (
-        "harmonics by angles",
-        "harmonics of x1' and of Coulomb friction balanced on its exact switching angles",
-    )
-    TAIL = "tail", "beyond them the mass as a free one, in closed form"
-    NO_TAIL = "no tail", "those beyond left out"
     SAMPLED = (
         "harmonics by samples",
         "harmonics of motion and of friction balanced on samples of a period, those beyond left out",

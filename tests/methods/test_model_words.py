@@ -12,14 +12,13 @@ def test_words_are_short_and_hold_no_mark_that_parts_them() -> None:
 
 
 def test_a_model_is_told_word_by_word() -> None:
-    model = "20 harmonics by angles; tail; unique: damped; a plugin's own (auto: fake, memory of friction)"
+    model = "20 harmonics by samples; unique: damped; a plugin's own (auto: fake, memory of friction)"
 
     assert model_in_sentences(model).split("; ") == [
-        "20 harmonics of x1' and of Coulomb friction balanced on its exact switching angles",
-        "beyond them the mass as a free one, in closed form",
+        "20 harmonics of motion and of friction balanced on samples of a period, those beyond left out",
         ModelWord.DAMPED.sentence,
         "a plugin's own",
         "auto chose fake: exact needs friction without memory (Coulomb)",
     ]
     assert why_unique_in_words(model).startswith("dashpots damp")
-    assert why_unique_in_words("tail") == ""
+    assert why_unique_in_words("by samples") == ""

@@ -300,7 +300,7 @@ def needs(
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> found = fl.needs(scene, fl.Coulomb(mu=0.4))
     >>> found.sentences[0]
-    'harmonics above 9 are not needed: without them the mean changes by 1.91e-06 at belt speed 5'
+    'harmonics above 9 are not needed: without them the mean changes by 1.63e-05 at belt speed 5'
     """
     scene, law = given_scene(scene), given_law(law)
     si = scene.dimensional

@@ -1,13 +1,8 @@
-"""Motions under Coulomb friction along the belt that reverse their slip twice a period.
+"""Motions under Coulomb friction along the belt that reverse their slip twice a period, in all harmonics.
 
-Friction is +-1 and known from the instants at which it switches. A linear mass answers unit steps of it by the same
+Friction is +-1 and known from the instants at which it reverses. A linear mass answers unit steps of it by the same
 velocity each, so that a motion of two reversals is known once the half of its forward slip is: that slip vanishes at
-both ends gives the phase of the middle, explicitly, and the belt speed to which they belong. What the mass answers is
-
-- harmonic k of force by the velocity 1/(damping + i (k Omega - stiffness/(k Omega))), for k <= H;
-- with the tail, those beyond as a free mass, 1/(i k Omega), whose velocity is piecewise linear between switches: what
-  this leaves out falls as k^-2, and so as k^-3 in the velocity after a switch;
-- all harmonics exactly, by its free oscillation between the switches.
+both ends gives the phase of the middle, explicitly, and the belt speed to which they belong.
 
 Source: Den Hartog, Trans. ASME 53 (1931) for the belt at rest; with a moving belt this derivation.
 """
@@ -19,12 +14,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictionlab.scene.body import Mass
 from frictionlab.values.quantities import Floats
 
-Phasors = NDArray[np.complex128]
 _COALESCED = 1e-5
 """Smallest distance kept between the two free exponents: critical damping is approached, never met."""
 _SHORTEST = 1e-9
@@ -49,48 +42,8 @@ class Around(NamedTuple):
 StepResponse = Callable[[Floats], Around]
 
 
-def impedances(damping: float, stiffness: float, frequency: float, harmonics: int) -> Phasors:
-    """Force over velocity at the harmonics 1 ... H."""
-    rate = frequency * np.arange(1.0, harmonics + 1.0)
-    return np.asarray(damping + 1j * (rate - stiffness / rate))
-
-
-def harmonic_impedances(mass: Mass, harmonics: int) -> Phasors:
-    """The same along the belt."""
-    return impedances(mass.damping, mass.stiffness, mass.frequency, harmonics)
-
-
-def response_of_harmonics(mass: Mass, harmonics: int, tail: bool) -> StepResponse:
-    """In so many harmonics; with the tail, those beyond as of a free mass."""
-    orders = np.arange(1.0, harmonics + 1.0)
-    inertia, impedance = 1j * mass.frequency * orders, harmonic_impedances(mass, harmonics)
-    # With the tail only what differs from the free mass: 1/impedance - 1/inertia, without the cancellation.
-    answer = -(mass.damping + mass.stiffness / inertia) / (impedance * inertia) if tail else 1.0 / impedance
-    steps = answer / (1j * math.pi * orders)
-    even, odd = 2.0 * steps.real, -2.0 * steps.imag
-
-    def around(phase: Floats) -> Around:
-        half = np.multiply.outer(0.5 * phase, orders)
-        rise, sine = np.sin(half), np.cos(half)
-        # Of the whole angle: its sine, and what its cosine is below 1.
-        sine, fall = 2.0 * rise * sine, 2.0 * rise**2
-        both, apart = -_along(fall, even), _along(sine, odd)
-        both_slope, apart_slope = _along(sine, -orders * even), _along(1.0 - fall, orders * odd)
-        if tail:  # the sum over all k >= 1 of -cos(k phase)/(pi k^2 frequency), twice, less that at phase 0
-            both = both + phase * (math.pi - 0.5 * phase) / (math.pi * mass.frequency)
-            both_slope = both_slope + (math.pi - phase) / (math.pi * mass.frequency)
-        return Around(both, apart, both_slope, apart_slope)
-
-    return around
-
-
-def _along(values: Floats, coefficients: Floats) -> Floats:
-    """The sum over harmonics. (A product of matrices so small would wait for the threads of BLAS.)"""
-    return np.asarray(np.einsum("...k,k->...", values, coefficients))
-
-
 def exact_response(mass: Mass) -> StepResponse:
-    """In all harmonics: the sum of weight*exp(exponent t), 0 <= t < period; not finite in undamped resonance."""
+    """Sum of weight*exp(exponent t), 0 <= t < period, of the free oscillation; not finite in undamped resonance."""
     period, damping_ratio = math.tau / mass.frequency, 0.5 * mass.damping
     root = np.sqrt(complex(damping_ratio**2 - mass.stiffness))
     root = root if abs(root) > _COALESCED else _COALESCED

@@ -5,7 +5,8 @@ frequency and time). Along the belt it jumps where slip reverses: the part that 
 times the sign of slip, has all its harmonics in closed form from the instants of reversal, and only what is left,
 which vanishes there, is sampled. In the plane friction turns, the more steeply the closer slip passes to rest, and
 samples are added until that is resolved. Newton's method uses the derivative of friction by the slip velocity, whose
-harmonics couple every harmonic of motion with every other.
+harmonics couple every harmonic of motion with every other. Where it does not settle along the belt, as where a mass
+rests and its harmonics cross zero again and again, the jump is spread over slip speeds at first.
 
 Source: Cameron & Griffin, J. Appl. Mech. 56 (1989), 149-154, of alternating frequency and time.
 """
@@ -18,12 +19,18 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.compile.lane_arrays import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip, sliding_vectors
-from frictionlab.methods.reduced.common import Modelled, mean_position, plane_refusal
-from frictionlab.methods.reduced.reversals import Phasors, impedances
+from frictionlab.methods.reduced.common import (
+    Modelled,
+    line_reasons,
+    line_refusal,
+    mean_position,
+    plane_refusal,
+)
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass
@@ -31,6 +38,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.values.quantities import Floats
 
+Phasors = NDArray[np.complex128]
 NOT_SETTLED = (
     "Newton's method does not settle on a motion of {} harmonics: slip passes too near rest for so few, or "
     "crosses zero there again and again; use shooting"
@@ -44,6 +52,8 @@ _CLOSED = 1e-12
 _ROUNDED = 1e4
 """How many times that may be left where no step gains anything more."""
 _MOST_STEPS = 40
+_SPREADS = 0.5 ** np.arange(14)
+"""Slip speeds over which a jump is spread, one after the other, relative to the largest velocity."""
 _SHORTEST_STEP = 1e-3
 _SLOWEST = 1e-12
 """Slip speed below which friction is as at this one, relative to the largest; the law gives none at rest."""
@@ -53,16 +63,24 @@ _MOST_CORRECTIONS = 6
 """Of a reversal."""
 
 
+def impedances(damping: float, stiffness: float, frequency: float, harmonics: int) -> Phasors:
+    """Force over velocity at the harmonics 1 ... H."""
+    rate = frequency * np.arange(1.0, harmonics + 1.0)
+    return np.asarray(damping + 1j * (rate - stiffness / rate))
+
+
 class Equations(NamedTuple):
     """A mass, a law, and the impedance and force of every harmonic (direction, harmonic), of one direction or two.
 
-    A velocity is the real part of the sum of V_k exp(i k angle).
+    A velocity is the real part of the sum of V_k exp(i k angle). spread: slip speed over which friction rises to that
+    of vanishing slip; at 0 it jumps.
     """
 
     mass: Mass
     law: FrictionLaw
     impedance: Phasors
     force: Phasors
+    spread: float = 0.0
 
     @classmethod
     def of(cls, scene: Scene, law: FrictionLaw, harmonics: int) -> Equations:
@@ -80,6 +98,18 @@ class Equations(NamedTuple):
     def friction(self) -> float:
         """The force of quick sliding."""
         return self.mass.normal_load * self.law.sliding_friction(1.0)
+
+    @property
+    def jump(self) -> float:
+        """Friction coefficient of vanishing slip where slip reverses at once; in the plane friction turns."""
+        return self.law.sliding_friction(0.0) if len(self.impedance) == 1 and not self.spread else 0.0
+
+    def sizes(self, speeds: Floats) -> Floats:
+        """Friction coefficients at slip speeds."""
+        sizes = sliding_vectors(self.law, speeds.astype(np.complex128)).real
+        if self.spread:
+            sizes = sizes - self.law.sliding_friction(0.0) * (1.0 - speeds / np.hypot(speeds, self.spread))
+        return np.asarray(sizes)
 
 
 class SampledMotion(NamedTuple):
@@ -100,14 +130,19 @@ class SampledMotion(NamedTuple):
         return float(np.abs(self.missing).max())
 
 
-def sampled_refusal(name: str, scene: Scene, law: FrictionLaw, tail: bool | None) -> str | None:
+def sampled_refusal(name: str, scene: Scene, law: FrictionLaw, harmonics: int) -> str | None:
     """Why harmonics on samples cannot do this driven scene and law at any belt speed; None if they can."""
+    if scene.load_along_belt_only and law.constant_sliding_friction():
+        mass = scene.mass()
+        resonant = impedances(mass.damping, mass.stiffness, mass.frequency, harmonics) == 0.0
+        unbounded = (
+            f"without damping, harmonic {1 + resonant.argmax()} of friction drives the mass without bound"
+        )
+        return line_refusal(name, scene, law) or (f"{name}: {unbounded}" if resonant.any() else None)
     if not takes_lanes(law):
         return (
             f"{name} in two harmonics or more needs friction along the slip, of its speed alone; use shooting"
         )
-    if tail:
-        return f"{name} has no tail in closed form but for Coulomb friction along the belt: leave tail out"
     return plane_refusal(name, scene, law)
 
 
@@ -118,7 +153,12 @@ def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modell
     means = np.array([complex(np.nan, np.nan) if each is None else -complex(*each.mean) for each in motions])
     # On a belt at rest it vanishes by symmetry: friction along the slip, of its speed alone, is odd.
     means = np.where((speeds == 0.0) & np.isfinite(means), 0j, means)
-    reasons = ["" if each else NOT_SETTLED.format(harmonics) for each in motions]
+    unsettled = NOT_SETTLED.format(harmonics)
+    if line:
+        held = law.sliding_friction(0.0) * scenes[0].mass().normal_load
+        reasons = line_reasons(scenes[0], held, speeds, means.real, unsettled)
+    else:
+        reasons = ["" if each else unsettled for each in motions]
 
     def orbit(i: int) -> Orbit | None:
         motion = motions[i]
@@ -144,14 +184,33 @@ def balanced(what: Equations, belt_speed: float, start: Phasors) -> SampledMotio
     directions, harmonics = start.shape
     fewest, most = _SAMPLES[directions]
     count, found = 2 ** math.ceil(math.log2(max(fewest, _PER_HARMONIC * harmonics))), None
+    if directions == 1 and what.law.constant_sliding_friction():
+        most = count  # all of friction jumps: samples only tell reversals apart
     while count <= most:
         settled = _settled(what, belt_speed, start, count)
+        if settled is None and directions == 1:
+            settled = _settled_by_spreading(what, belt_speed, start, count)
         if settled is not None:
             found, start = settled, settled.velocity
             if _friction(what, start, belt_speed, 2 * count).left <= _ENOUGH * what.friction:
                 break
         count *= _MORE
     return found
+
+
+def _settled_by_spreading(
+    what: Equations, belt_speed: float, start: Phasors, count: int
+) -> SampledMotion | None:
+    """The same from motions under friction whose jump is spread over ever less of slip."""
+    for spread in (float(np.abs(start).max()) * _SPREADS).tolist():
+        near = _settled(what._replace(spread=spread), belt_speed, start, count)
+        if near is None:
+            return None
+        start = near.velocity
+        found = _settled(what, belt_speed, start, count)
+        if found is not None:
+            return found
+    return None
 
 
 def _settled(what: Equations, belt_speed: float, start: Phasors, count: int) -> SampledMotion | None:
@@ -180,10 +239,9 @@ def _settled(what: Equations, belt_speed: float, start: Phasors, count: int) -> 
 def _friction(what: Equations, velocity: Phasors, belt_speed: float, count: int) -> SampledMotion:
     slip = _waves(velocity, count)
     slip[0] -= belt_speed
-    (directions, harmonics), speed = velocity.shape, _speeds(slip)
-    # In the plane friction turns: it jumps nowhere.
-    jump = what.law.sliding_friction(0.0) if directions == 1 else 0.0
-    smooth = (_sizes(what.law, speed) - jump) * slip / speed
+    harmonics, speed = velocity.shape[1], _speeds(slip)
+    jump = what.jump
+    smooth = (what.sizes(speed) - jump) * slip / speed
     friction, pulses = np.fft.rfft(smooth, axis=1)[:, : harmonics + 1] / count, np.zeros(1, np.complex128)
     if jump:
         signs, pulses = _switches(velocity[0], slip[0], belt_speed)
@@ -195,10 +253,6 @@ def _friction(what: Equations, velocity: Phasors, belt_speed: float, count: int)
 def _speeds(slip: Floats) -> Floats:
     speed = np.sqrt((slip**2).sum(axis=0))
     return np.maximum(speed, _SLOWEST * max(float(speed.max()), 1e-300))
-
-
-def _sizes(law: FrictionLaw, speeds: Floats) -> Floats:
-    return sliding_vectors(law, speeds.astype(np.complex128)).real
 
 
 def _waves(phasors: Phasors, count: int) -> Floats:
@@ -273,8 +327,8 @@ def _derivative(what: Equations, found: SampledMotion) -> Phasors:
     Across the slip friction's size over the speed, along it the slope of the law; a jump moves with its reversal.
     """
     (directions, harmonics), slip, speed = found.missing.shape, found.slip, _speeds(found.slip)
-    size, way = _sizes(what.law, speed), slip / speed
-    slope = (_sizes(what.law, (1.0 + _NUDGE) * speed) - size) / (_NUDGE * speed)
+    size, way = what.sizes(speed), slip / speed
+    slope = (what.sizes((1.0 + _NUDGE) * speed) - size) / (_NUDGE * speed)
     turning, along = size / speed, way[:, None] * way[None, :]
     changes = turning * (np.eye(directions)[:, :, None] - along) + slope * along
     spectrum = np.fft.rfft(changes, axis=2)[:, :, : 2 * harmonics + 1] / slip.shape[1]

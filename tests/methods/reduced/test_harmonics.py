@@ -12,14 +12,11 @@ import frictionlab as fl
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
-from frictionlab.methods.reduced.sampled import Equations, _switches, balanced
-from frictionlab.methods.reduced.switched import SwitchedLine, switched_motions
+from frictionlab.methods.reduced.sampled import Equations, _switches, balanced, sampled
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.motion.orbit.sample import harmonic_parts
 from frictionlab.scene.scene import Drive, Scene
-from frictionlab.theory import friction_free_velocity
 from frictionlab.values.notes import WrongValues
 
 LAW = Coulomb(mu=0.4)
@@ -48,9 +45,9 @@ FIG_4B = scene(10.0)
 STICKS = scene(0.5, frequency=0.5, amplitude=2.5)
 
 
-def mean(one, harmonics, tail=None):
+def mean(one, harmonics):
     """Of one scene, without its error."""
-    return float(HarmonicBalance(harmonics=harmonics, tail=tail).model_means([one], LAW)[0])
+    return float(HarmonicBalance(harmonics=harmonics).model_means([one], LAW)[0])
 
 
 def lacking(one, orbit, harmonics, across=False):
@@ -69,53 +66,30 @@ def lacking(one, orbit, harmonics, across=False):
     rate = mass.frequency * parts.harmonic[1:]
     lead = np.exp(-1j * np.angle(mass.force))  # phases are those against the load along the belt
     force = np.where(rate == mass.frequency, load * lead, 0.0)
-    free = np.where(rate > (harmonics - 2.5) * mass.frequency, 1j * rate * velocity, 0.0)
     impedance = damping + 1j * (rate - stiffness / rate)
-    resisting = mass.normal_load * friction - force
-    return impedance * velocity + resisting, free + resisting, velocity
+    return impedance * velocity + mass.normal_load * friction - force, velocity
 
 
 # --- what it balances -----------------------------------------------------------------------------------------------
 
 
-def test_one_harmonic_without_a_tail_is_that_of_eqs_8_and_9() -> None:
-    speeds = np.linspace(0.0, 60.0, 25)
-    scenes = [scene(speed) for speed in speeds.tolist()]
-    line = SwitchedLine.of(FIG_4B.mass(), 1, 4.0, friction_free_velocity(FIG_4B), tail=False)
+def test_one_harmonic_on_samples_is_that_of_eqs_8_and_9() -> None:
+    scenes = [scene(speed) for speed in np.linspace(-60.0, 60.0, 25).tolist()]
 
-    searched = switched_motions(FIG_4B, LAW, line, speeds)
+    searched, explicit = sampled(scenes, LAW, 1).mean, HarmonicBalance().model_means(scenes, LAW)
 
-    explicit = HarmonicBalance().model_means(scenes, LAW)
-    np.testing.assert_allclose(LAW.mu * searched.mean, explicit, atol=1e-14)
+    np.testing.assert_allclose(searched, explicit, atol=1e-11)
 
 
-@pytest.mark.parametrize("tail", [False, True])
 @pytest.mark.parametrize("belt_speed", [10.0, -31.0])
-def test_every_harmonic_obeys_its_own_equation_and_those_beyond_that_of_a_free_mass(belt_speed, tail) -> None:
+def test_every_harmonic_obeys_its_own_equation_and_there_are_none_beyond(belt_speed) -> None:
     one = scene(belt_speed, phase=40.0)
-    orbit = HarmonicBalance(harmonics=7, tail=tail).solve([one], LAW, 1e-3).orbit(0)
+    orbit = HarmonicBalance(harmonics=7).solve([one], LAW, 1e-3).orbit(0)
 
-    missing, free, velocity = lacking(one, orbit, 9)
+    missing, velocity = lacking(one, orbit, 9)
 
     assert np.abs(missing[:7]).max() < 1e-9
-    assert (np.abs(velocity[7:]).max() < 1e-9) == (not tail)
-    assert not tail or np.abs(free[7:]).max() < 1e-9
-
-
-def test_a_mass_at_rest_on_the_belt_obeys_them_too() -> None:
-    orbit = HarmonicBalance(harmonics=6).solve([STICKS], LAW, 1e-3).orbit(0)
-
-    assert orbit.stick.any()
-    np.testing.assert_allclose(orbit.v[orbit.stick].real, STICKS.belt_speed, atol=1e-9)
-    assert np.abs(orbit.friction).max() <= LAW.mu * (1.0 + 1e-6)
-    assert np.abs(lacking(STICKS, orbit, 6)[0]).max() < 1e-8
-
-
-def test_a_rest_shorter_than_the_samples_at_which_slip_is_looked_at_is_found() -> None:
-    still = scene(0.0, 1.28714440884, 1.52995094918, 0.0231566951405, amplitude=1.0)
-    one = still.at(0.42960521635 * friction_free_velocity(still))
-
-    assert HarmonicBalance(harmonics=9).solve([one], LAW, 1e-3).orbit(0).stick.any()
+    assert np.abs(velocity[7:]).max() < 1e-9
 
 
 @pytest.mark.parametrize("law", [LAW, STRIBECK], ids=["coulomb", "stribeck"])
@@ -129,14 +103,13 @@ def test_in_the_plane_and_with_friction_that_varies_with_speed_they_obey_them_to
         assert parts.friction_amplitude[0] == pytest.approx(-own, abs=1e-8)
 
     line = scene(-10.0, phase=70.0)
-    orbit = HarmonicBalance(harmonics=6, tail=False).solve([line], law, 1.0).orbit(0)
+    orbit = HarmonicBalance(harmonics=6).solve([line], law, 1.0).orbit(0)
     assert np.abs(lacking(line, orbit, 6)[0]).max() < 1e-8
 
 
-@pytest.mark.parametrize("tail", [False, True])
-def test_even_harmonics_vanish_on_a_belt_at_rest(tail) -> None:
+def test_even_harmonics_vanish_on_a_belt_at_rest() -> None:
     one = scene(0.0, phase=10.0)
-    answers = HarmonicBalance(harmonics=6, tail=tail).solve([one], LAW, 1e-3)
+    answers = HarmonicBalance(harmonics=6).solve([one], LAW, 1e-3)
     parts = harmonic_parts(one, answers.orbit(0), 6)
 
     assert abs(answers.mean[0]) < 1e-14
@@ -147,21 +120,22 @@ def test_even_harmonics_vanish_on_a_belt_at_rest(tail) -> None:
 # --- how close it comes ---------------------------------------------------------------------------------------------
 
 
-def test_without_the_tail_the_mean_is_of_first_order() -> None:
-    errors = [abs(mean(FIG_4B, harmonics, tail=False) - KNOWN) for harmonics in (16, 32, 64)]
+def test_where_friction_jumps_the_mean_is_of_first_order() -> None:
+    errors = [abs(mean(FIG_4B, harmonics) - KNOWN) for harmonics in (16, 32, 64)]
 
     assert errors == pytest.approx([2.1e-5, 1.1e-5, 5.5e-6], rel=0.05)
 
 
-@pytest.mark.parametrize("one", [FIG_4B, STICKS], ids=["slip", "stick"])
-def test_with_the_tail_it_is_of_third_order(one) -> None:
-    known = float(Exact().solve([one], LAW, 1e-10).mean[0].real)
-    orders = np.array([8, 16, 32, 64])
+@pytest.mark.parametrize("law", [LAW, STRIBECK], ids=["coulomb", "stribeck"])
+def test_harmonics_that_cannot_rest_balance_beside_a_mass_that_does_and_come_nearer(law) -> None:
+    full, far = Shooting().solve([STICKS], law, 1e-9), []
+    for harmonics in (2, 4, 8):
+        found = HarmonicBalance(harmonics=harmonics).solve([STICKS], law, 1.0)
+        far.append(abs(found.mean[0] - full.mean[0].real))
+        assert far[-1] <= found.error[0] + full.error[0]
+        assert np.abs(lacking(STICKS, found.orbit(0), harmonics)[0]).max() < 1e-8
 
-    errors = np.array([abs(mean(one, harmonics) - known) for harmonics in orders.tolist()])
-
-    assert -3.6 < np.polyfit(np.log(orders), np.log(errors), 1)[0] < -2.4
-    assert (errors * orders**3.0).max() < 0.2
+    assert far[0] > far[1] > far[2]
 
 
 def test_in_the_plane_smooth_friction_converges_exponentially_and_errors_tell_how_far() -> None:
@@ -175,16 +149,6 @@ def test_in_the_plane_smooth_friction_converges_exponentially_and_errors_tell_ho
     assert far[2] < 1e-9
     assert all(distance <= each.error[0] + exact.error[0] for distance, each in zip(far, found, strict=True))
     assert HarmonicBalance(harmonics=8).model_means([planar(0.0)], LAW)[0] == 0.0
-
-
-@pytest.mark.parametrize("belt_speed", [10.0, -40.0])
-def test_samples_balance_coulomb_friction_as_its_switches_do(belt_speed) -> None:
-    one = scene(belt_speed, phase=70.0)
-    for harmonics in (1, 4, 16):
-        what = Equations.of(one, LAW, harmonics)
-        motion = balanced(what, belt_speed, what.force / what.impedance)
-        expected = mean(one, harmonics, tail=False if harmonics > 1 else None)
-        assert -motion.mean[0] == pytest.approx(expected, abs=1e-11)
 
 
 def test_slip_that_reverses_twice_between_two_samples_is_seen_to() -> None:
@@ -210,7 +174,7 @@ class Steep(SlidingLaw):
 
 def test_samples_resolve_friction_that_is_steep_at_rest_and_slip_that_passes_near_it() -> None:
     steep, scenes = Steep(mu=0.4, scale=0.02), [FIG_4B.at(v) for v in (2.0, 10.0)]
-    coulomb = [mean(one, 8, tail=False) for one in scenes]
+    coulomb = [mean(one, 8) for one in scenes]
     assert HarmonicBalance(harmonics=8).model_means(scenes, steep) == pytest.approx(coulomb, abs=2e-6)
 
     what = Equations.of(planar(3.0, omega_r=10.0), LAW, 4)
@@ -241,12 +205,6 @@ def test_friction_that_varies_with_speed_converges_on_the_full_mean_and_errors_t
 # --- what it refuses ------------------------------------------------------------------------------------------------
 
 
-def test_a_tail_is_there_from_two_harmonics_on() -> None:
-    with pytest.raises(WrongValues, match=r"tail.*one harmonic has no tail"):
-        HarmonicBalance(tail=True)
-    assert mean(FIG_4B, 6) == mean(FIG_4B, 6, tail=True) != mean(FIG_4B, 6, tail=False)
-
-
 @pytest.mark.parametrize("harmonics", [0, 1001, 2.5, True, "3"])
 def test_harmonics_are_whole_numbers_in_range(harmonics) -> None:
     with pytest.raises(WrongValues, match="harmonics"):
@@ -254,7 +212,7 @@ def test_harmonics_are_whole_numbers_in_range(harmonics) -> None:
 
 
 def test_a_study_may_ask_for_it() -> None:
-    state = fl.steady_state(FIG_4B, LAW, HarmonicBalance(harmonics=20))
+    state = fl.steady_state(FIG_4B, LAW, HarmonicBalance(harmonics=20, tail=False))
 
-    assert state.mean_friction == pytest.approx(KNOWN, abs=1e-7)
-    assert state.model == "20 harmonics by angles; tail"
+    assert abs(state.mean_friction - KNOWN) <= state.error < 2e-5
+    assert state.model == "20 harmonics by samples"

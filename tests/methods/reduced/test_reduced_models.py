@@ -87,9 +87,7 @@ def shaped(belt_speed, waveform, amplitude=8.0, **changes):
         (ONE, planar(unbalance=0.0), SOFT, "two directions"),
         (ONE, UNDRIVEN, SOFT, "needs a drive"),
         (ONE, UNDAMPED, SOFT, "undamped resonance"),
-        (WITH_A_TAIL, planar(), LAW, "no tail in closed form"),
-        (WITH_A_TAIL, scene(5.0), STRIBECK, "no tail in closed form"),
-        (WITH_A_TAIL, scene(5.0), LAW, ""),
+        (WITH_A_TAIL, scene(5.0), LAW, "leave tail out"),
         (THREE, scene(5.0), LAW, ""),
         (THREE, scene(5.0), FALLING, "outweighs the fall"),
         (THREE, scene(5.0), SOFT, "one harmonic alone"),
@@ -127,8 +125,8 @@ slow = deep("a kernel slow to compile")
         (ONE, RESONANT, Dahl(mu=0.4, contact_stiffness=3.0), "balances at velocity amplitudes 0.6666, "),
         (ONE, WITHIN, Jenkins(mu=0.4, presliding_length=1.0), "depends on the start"),
         pytest.param(ONE, scene(8.0, drive=SWINGS), FALLS, "use shooting", marks=slow),
-        (HarmonicBalance(harmonics=20, tail=False), STICKS, LAW, "crosses zero more than twice"),
-        (HarmonicBalance(harmonics=12), STICKS, MILD, "does not settle on a motion of 12 harmonics"),
+        (HarmonicBalance(harmonics=40), STICKS, LAW, "does not settle on a motion of 40 harmonics"),
+        (HarmonicBalance(harmonics=40), STICKS, MILD, "use shooting"),
     ],
 )
 def test_points_without_one_mean_are_refused_with_the_reason(method, one, law, because: str) -> None:
@@ -149,7 +147,7 @@ def test_points_without_one_mean_are_refused_with_the_reason(method, one, law, b
 
 LINE, PLANE = ([one(v) for v in (1.0, 20.0, 60.0)] for one in (scene, lambda v: planar(v, 4.0, 1.0, 4.0)))
 SHAKEN = [scene(v, belt_vibration=VIBRATION) for v in (1.0, 20.0, 60.0)]
-TAILED, PLAIN = (HarmonicBalance(harmonics=6, tail=tail) for tail in (True, False))
+SIX = HarmonicBalance(harmonics=6, tail=False)
 
 
 @pytest.mark.parametrize(
@@ -161,10 +159,9 @@ TAILED, PLAIN = (HarmonicBalance(harmonics=6, tail=tail) for tail in (True, Fals
         (ONE, LINE, LAW),
         (ONE, SHAKEN, LAW),
         (ONE, LINE, Dahl(mu=0.4, contact_stiffness=8.0)),
-        (TAILED, LINE, LAW),
-        (PLAIN, LINE, LAW),
-        (PLAIN, LINE, STRIBECK),
-        (PLAIN, PLANE, LAW),
+        (SIX, LINE, LAW),
+        (SIX, LINE, STRIBECK),
+        (SIX, PLANE, LAW),
     ],
 )
 def test_a_belt_that_moves_back_has_the_same_motion_and_minus_the_mean_which_the_model_alone_has_too(
@@ -186,7 +183,7 @@ def test_a_belt_that_moves_back_has_the_same_motion_and_minus_the_mean_which_the
 
 @pytest.mark.parametrize(
     ("method", "law", "within"),
-    [(ONE, LAW, 1e-8), (ONE, SOFT, 1e-5), (TAILED, LAW, 1e-8), (PLAIN, STRIBECK, 1e-6)],
+    [(ONE, LAW, 1e-8), (ONE, SOFT, 1e-5), (SIX, LAW, 1e-8), (SIX, STRIBECK, 1e-6)],
 )
 def test_energies_balance_and_columns_are_those_of_the_orbit(method, law, within) -> None:
     scenes = [scene(v, 1.2) for v in (-15.0, 1.0, 25.0, 60.0)]
@@ -208,13 +205,12 @@ def test_energies_balance_and_columns_are_those_of_the_orbit(method, law, within
         contact = taken + one.belt_speed * 10 * mean * period
         assert contact == pytest.approx(columns["energy_contact"][i], rel=within)
         assert 0.5 * np.ptp(v) == pytest.approx(columns["velocity_amplitude"][i], rel=0.02)
-        if method is not TAILED:  # whose mass obeys springs and dashpots in the harmonics kept
-            assert put_in == pytest.approx(taken + columns["energy_viscous"][i], rel=1e-7)
+        assert put_in == pytest.approx(taken + columns["energy_viscous"][i], rel=1e-7)
 
 
 def test_without_a_load_across_the_belt_the_plane_is_the_line() -> None:
     across = Transverse(natural_frequency=3.0, damping_ratio=0.1, load=Load(unbalance=0.0))
-    for method, law in ((MDSM, LAW), (ONE, LAW), (TAILED, LAW), (PLAIN, STRIBECK)):
+    for method, law in ((MDSM, LAW), (ONE, LAW), (SIX, LAW), (SIX, STRIBECK)):
         line, plane = (
             with_columns(method, [one], law, 1e-8) for one in (scene(20.0), scene(20.0, transverse=across))
         )
@@ -228,8 +224,7 @@ def test_without_a_load_across_the_belt_the_plane_is_the_line() -> None:
 
 
 models = st.one_of(
-    st.sampled_from([MDSM, ONE]),
-    st.builds(lambda n, tail: HarmonicBalance(harmonics=n, tail=tail), st.integers(2, 40), st.booleans()),
+    st.sampled_from([MDSM, ONE]), st.builds(lambda n: HarmonicBalance(harmonics=n), st.integers(2, 40))
 )
 
 

@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1449,
     "curves": 841,
     "laws": 686,
-    "methods": 10816,
+    "methods": 10760,
     "motion": 4851,
     "report": 1772,
     "runner": 4301,
@@ -23,7 +23,7 @@ LIMITS = {
     "testing": 1491,
     "theory": 918,
     "values": 1380,
-    "tests": 29301,
+    "tests": 29294,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -26,7 +26,6 @@ from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.march.laps import march_laps
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.periodic.setting import maps_of
-from frictionlab.methods.reduced.bristle import harmonics_of_legs
 from frictionlab.methods.shooting.undriven_path import follow_undriven
 
 FILES = {
@@ -207,7 +206,7 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 @pytest.mark.parametrize(
     "root",
     [
-        answer_curve, maps_of, follow_undriven, march_laps, harmonics_of_legs, LuGre,
+        answer_curve, maps_of, follow_undriven, march_laps, LuGre,
         law_addresses._on_the_line(law_addresses._called(Coulomb(mu=0.4))),
     ],
 )  # fmt: skip

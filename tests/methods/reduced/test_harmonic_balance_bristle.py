@@ -17,7 +17,7 @@ from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.methods.reduced.bristle import Loops
+from frictionlab.methods.reduced.bristle import over_sine
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
 from frictionlab.theory import dahl_describing_function, friction_free_velocity, jenkins_describing_function
 
@@ -36,9 +36,9 @@ def dahl(presliding):
     return Dahl(mu=MU, presliding_length=presliding)
 
 
-def over_a_sine(law, kappa):
+def relative(law, kappa):
     """Mean and first harmonic of friction over the slip sin(theta) - kappa, relative to mu."""
-    found = Loops(law, kappa, 1.0).friction(1.0)
+    found = over_sine(law, 1.0, kappa, 1.0)
     return found._replace(mean=found.mean / MU, first=found.first / MU)
 
 
@@ -55,20 +55,10 @@ def test_friction_over_a_sine_is_its_describing_function(kind, presliding: float
     describing = dahl_describing_function if kind is Dahl else jenkins_describing_function
     closed = describing(1.0 / presliding) / presliding
 
-    found = over_a_sine(kind(mu=MU, presliding_length=presliding), 0.0)
+    found = relative(kind(mu=MU, presliding_length=presliding), 0.0)
 
     assert found.first == pytest.approx(complex(closed.imag, -closed.real), rel=within, abs=0.1 * within)
     assert abs(found.mean) < 1e-12
-
-
-@pytest.mark.parametrize("kappa", [0.0, 0.25, 0.75, 0.95])
-def test_the_exact_path_and_collocation_of_the_rate_agree_on_a_biased_loop(kappa: float) -> None:
-    for presliding in (1.0, 0.1, 1e-3):
-        path = over_a_sine(dahl(presliding), kappa)
-        mean, first = Loops(dahl(presliding), kappa, 1.0)._collocated(1.0)
-
-        assert mean / MU == pytest.approx(path.mean, abs=2e-9)
-        assert first / MU == pytest.approx(path.first, abs=2e-9)
 
 
 def test_means_over_a_biased_sine_are_those_of_the_reference_loops() -> None:
@@ -82,17 +72,17 @@ def test_means_over_a_biased_sine_are_those_of_the_reference_loops() -> None:
         }
         for column, (law, accuracy) in laws.items():
             if row[column] and kappa != 0.0:
-                assert -over_a_sine(law, kappa).mean == pytest.approx(float(row[column]), abs=accuracy)
+                assert -relative(law, kappa).mean == pytest.approx(float(row[column]), abs=accuracy)
 
 
 def test_friction_has_an_in_phase_and_a_quadrature_part_and_the_former_dies_in_the_coulomb_limit() -> None:
     for kappa in (0.0, 0.25, 0.5, 0.75, 0.95):
         for presliding in (10.0, 1.0, 0.1, 0.01):
-            found = over_a_sine(dahl(presliding), kappa)
+            found = relative(dahl(presliding), kappa)
             assert -found.first.imag > 0.01 * (1.0 - kappa**2)
             assert found.first.real > 0.0
     for kappa in (0.0, 0.3, 0.8):
-        stiff, stiffer = (over_a_sine(dahl(size), kappa).first for size in (1e-4, 1e-6))
+        stiff, stiffer = (relative(dahl(size), kappa).first for size in (1e-4, 1e-6))
         coulomb = 4.0 / math.pi * math.sqrt(1.0 - kappa**2)
         assert stiff.imag / stiffer.imag == pytest.approx(10.0, rel=2e-3)  # as the root of the length
         assert stiffer.real == pytest.approx(coulomb, rel=1e-5)

@@ -20,8 +20,8 @@ from frictionlab.scene.scene import Scene
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
 """From the cheapest method to the most general one."""
-FOR_MEMORY: tuple[Method, ...] = (RelayLocus(), Shooting())
-"""For bodies that remember."""
+FOR_MEMORY: tuple[Method, ...] = (RelayLocus(),)
+"""For bodies that remember, or are known by a table."""
 
 
 def _methods_for(scene: Scene) -> tuple[Method, ...]:
@@ -29,7 +29,7 @@ def _methods_for(scene: Scene) -> tuple[Method, ...]:
 
 
 class Auto(Method):
-    """Cheapest method that applies: exact, else shooting; relay_locus first for a body with memory.
+    """Cheapest method that applies: exact, else shooting; relay_locus for a body with memory.
 
     One method solves a whole curve, since a change of method inside a curve would look like physics. The
     column ``model`` tells why it was chosen. An answer whose error is above the tolerance counts as failed.
@@ -56,7 +56,6 @@ class Auto(Method):
             reason = method.refusal(scene, law)
             if reason is None:
                 why = against[-1].split(";")[0] if against else ModelWord.CHEAPEST.sentence
-                why = ModelWord.BEYOND_LOCUS.sentence if against and scene.remembers else why
                 return method, f"cheapest method that applies: {why}"
             against.append(reason)
         return None, "; ".join(dict.fromkeys(part for reason in against for part in reason.split("; ")))

@@ -159,10 +159,21 @@ def about_rest(name: str, scene: Scene) -> str | None:
     return f"{told}: give a belt speed" if rests and scene.body_terms else None
 
 
+REMEMBERS = (
+    "a body that remembers, or is known by a table, is solved under Coulomb friction alone, along one line: use "
+    "method relay_locus and law coulomb, or a body of springs and dashpots"
+)
+
+
 def beyond_linear(name: str, scene: Scene, taken: Sequence[str] = ()) -> str | None:
     """Why a method of this name cannot do the body of a scene, None where it can; taken: keys that it takes."""
     others = [f"body.{term}" for term in scene.body_terms if term not in taken]
     return f"{name} does not take {' and '.join(others)}" if others else None
+
+
+def beyond_springs(scene: Scene) -> str | None:
+    """Why no motion of a scene is followed from instant to instant: its body is more than springs and dashpots."""
+    return REMEMBERS if scene.remembers else None
 
 
 def beyond_balance(name: str, scene: Scene) -> str | None:
@@ -172,7 +183,10 @@ def beyond_balance(name: str, scene: Scene) -> str | None:
             f"{name} takes a body by its response along one line, with a mass: leave transverse and slip out"
         )
     if scene.undriven:
-        return f"{name} needs a drive, whose period is that of the motion"
+        return (
+            f"{name} needs a drive, whose period is that of the motion: give one, or method shooting and a body of "
+            "springs and dashpots"
+        )
     body = linear_body(scene)
     if not body.dissipates:
         return f"{name} needs a body that dissipates at every frequency: give damping_ratio or memory"

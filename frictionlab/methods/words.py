@@ -136,11 +136,6 @@ class ModelWord(StrEnum):
     MEMORY = "memory of friction", "exact needs friction without memory (Coulomb)"
     SPEED = "friction by speed", "exact needs friction that does not vary with speed (Coulomb)"
     STATIC = "static friction", "exact needs static friction equal to sliding friction (no mu_static)"
-    BEYOND_LOCUS = (
-        "beyond relay locus",
-        "relay_locus takes Coulomb friction without mu_static on a linear body under sines or a triangle, along one "
-        "line",
-    )
     UNDRIVEN = "no drive", "exact needs a drive, whose period is that of the motion"
     LOAD_ACROSS = "load across", "exact works along one line: this scene has a transverse load"
     BELT_ACROSS = "belt across", "exact works along one line: this scene has a belt that vibrates across"

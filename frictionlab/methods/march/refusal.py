@@ -8,18 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import about_rest, beyond_linear
+from frictionlab.methods.base import about_rest, beyond_linear, beyond_springs
 from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, fewest_steps, steppers_of
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.shooting.method import suggest_shooting
-from frictionlab.scene.parts import BENDING, REMEMBERING
+from frictionlab.scene.parts import BENDING
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
-from frictionlab.theory.springs import is_exact
 
 FEWEST_LAPS, WORK = 10, 16_000_000
 """Fewest laps that a motion takes to settle; steps that a point may cost in all, where ``steps`` is left out."""
-GRIDDED = [name for name, facts in STEPPERS.items() if facts.gridded]
 SEVERAL = "deflections", "scalars"
 """Kinds of memory that are several numbers, or no deflection."""
 
@@ -51,11 +49,10 @@ def reasons_against(asked: Request) -> Iterator[str]:
     if scene.degrees_of_freedom == 0:
         yield suggest_shooting("march steps a mass, and this slip is prescribed", scene, law)
         return
-    if reason := beyond_linear("march", scene, (*BENDING, *REMEMBERING)) or about_rest("march", scene):
+    bent = beyond_linear("march", scene, BENDING) or about_rest("march", scene)
+    if reason := beyond_springs(scene) or bent:
         yield reason
         return
-    if scene.remembers:
-        yield from _against_memory(asked)
     if not steppers_of(asked.kind):
         yield "march needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         return
@@ -70,15 +67,6 @@ def reasons_against(asked: Request) -> Iterator[str]:
     yield from _against_jumps(asked)
     yield from _against_rates(asked)
     yield from _against_so_few_steps(asked)
-
-
-def _against_memory(asked: Request) -> Iterator[str]:
-    if asked.scene.undriven:
-        yield "on a body that remembers march needs a drive"
-    elif not is_exact(asked.scene):
-        yield "of bodies that remember march follows a standard linear solid (relaxation of order 1); use shooting"
-    elif not asked.facts.gridded:
-        yield f"stepper {asked.stepper} does not follow a body that remembers; use {', '.join(GRIDDED)}"
 
 
 def _against_constant_contact(asked: Request) -> Iterator[str]:

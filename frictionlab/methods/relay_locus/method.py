@@ -18,6 +18,7 @@ from frictionlab.methods.base import (
     Status,
     beyond_balance,
     beyond_linear,
+    beyond_springs,
 )
 from frictionlab.methods.relay_locus import curve
 from frictionlab.methods.relay_locus.locus import MOST_INSTANTS
@@ -75,7 +76,7 @@ class RelayLocus(Method):
         """Anything but Coulomb friction on a driven line, on a body that is linear and dissipates, shaken by
         sines."""
         if law.memory_kind != "none" or not law.constant_sliding_friction() or not law.monotone():
-            return "relay_locus solves Coulomb friction alone, without mu_static"
+            return beyond_springs(scene) or "relay_locus solves Coulomb friction alone, without mu_static"
         if reason := beyond_linear(self.name, scene, TAKEN):
             return reason
         if reason := beyond_balance(self.name, scene):

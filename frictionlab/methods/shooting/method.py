@@ -9,7 +9,14 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, FoundState, Method, about_rest, beyond_linear
+from frictionlab.methods.base import (
+    Answers,
+    FoundState,
+    Method,
+    about_rest,
+    beyond_linear,
+    beyond_springs,
+)
 from frictionlab.methods.periodic.period_map import MAP_KINDS
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
@@ -18,9 +25,8 @@ from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
 from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
 from frictionlab.motion.orbit.record import Orbit
-from frictionlab.scene.parts import BENDING, BY_TABLE, REMEMBERING
+from frictionlab.scene.parts import BENDING
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.springs import is_exact
 
 Applies = Callable[[Scene, FrictionLaw], bool]
 Solve = Callable[[Sequence[Scene], FrictionLaw, float], Answers]
@@ -42,24 +48,6 @@ CREEPS = (
     "on a belt at rest a contact whose memory has no direction creeps as long as its spring pulls: no state is "
     "steady but that of the unstretched spring; leave initial out, or give a belt speed"
 )
-
-TABLE = (
-    "shooting follows a mass on a spring and a dashpot, and body.receptance is a table: use relay_locus, which takes "
-    "Coulomb friction on it, or give the body by its numbers"
-)
-NO_HARMONICS = (
-    "on a body that remembers shooting needs a drive, over whose harmonics its memory is fitted by springs; without "
-    "one it follows standard linear solids alone"
-)
-RELAXES = (
-    "on a belt at rest friction takes over from a spring as long as that relaxes, and may give way later: leave "
-    "initial out, or give a belt speed"
-)
-
-
-def _is_followed(solve: Solve, scene: Scene) -> bool:
-    """Whether motions are followed by the map that closes orbits, of a body that is known as it is."""
-    return solve is solve_driven and (is_exact(scene) or not scene.remembers)
 
 
 def starts_to_creep(scene: Scene) -> bool:
@@ -98,20 +86,14 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
-        if BY_TABLE in scene.body_terms:
-            return TABLE
-        if reason := beyond_linear(self.name, scene, (*BENDING, *REMEMBERING)) or about_rest(
-            self.name, scene
+        if reason := (
+            beyond_springs(scene) or beyond_linear(self.name, scene, BENDING) or about_rest(self.name, scene)
         ):
             return reason
         if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
-        if scene.undriven and scene.remembers and not is_exact(scene):
-            return NO_HARMONICS
-        if scene.undriven and scene.remembers and starts_to_creep(scene):
-            return RELAXES
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"
         if scene.undriven and law.memory_kind == "scalars" and starts_to_creep(scene):
@@ -130,14 +112,14 @@ class Shooting(Method):
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
         """Of a driven mass, by the period map that closes its orbits."""
         solve = next(solve for applies, solve in CASES if applies(scene, law))
-        return follow_motion(scene, law, periods, tolerance) if _is_followed(solve, scene) else []
+        return follow_motion(scene, law, periods, tolerance) if solve is solve_driven else []
 
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:
         """Motions of a driven mass followed to their ends, and from the ends at one belt speed on at the next."""
         solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
-        return follow_states(scenes, law, tolerance, starts) if _is_followed(solve, scenes[0]) else []
+        return follow_states(scenes, law, tolerance, starts) if solve is solve_driven else []
 
 
 def suggest_shooting(reason: str, scene: Scene, law: FrictionLaw) -> str:

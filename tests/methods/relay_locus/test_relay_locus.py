@@ -15,10 +15,12 @@ from hypothesis import strategies as st
 from profiles import deep
 from strategies import sizes
 
+from frictionlab import steady_state
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
 from frictionlab.methods.auto import Auto
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.march.method import March
 from frictionlab.methods.relay_locus.method import UNSOLVED, RelayLocus
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.motion.orbit.sample import phasors_of_panels
@@ -325,14 +327,34 @@ def test_auto_takes_it_where_a_body_remembers_and_tells_what_it_cannot_do():
     scene = driven(10.0, 1.0, 0.1, 4.0, body=body)
 
     assert Auto().choice(scene, LAW)[0] == RelayLocus()
-    assert Auto().choice(scene, Dahl(mu=0.4, stiffness=10.0))[0] == Shooting()
     assert "Coulomb friction alone" in RelayLocus().refusal(scene, Dahl(mu=0.4, stiffness=10.0))
     across = Transverse(natural_frequency=1.0, damping_ratio=0.1)
     assert "one line" in RelayLocus().refusal(scene.with_(transverse=across), LAW)
-    undriven = scene.with_(drive=None, initial=Initial(x=1.0))
-    assert Auto().choice(undriven, LAW)[0] == Shooting()
-    assert "drive" in Auto().refusal(undriven.with_(body=fractional(0.2, 0.5)), LAW)
     square = scene.with_(drive=Drive(amplitude=1.0, frequency=1.0, waveform="square"))
     assert "sines" in RelayLocus().refusal(square, LAW)
     cubic = scene.with_(body=Body(relaxation=body.relaxation, cubic_stiffness=0.1))
     assert RelayLocus().refusal(cubic, LAW) == "relay_locus does not take body.cubic_stiffness"
+
+
+ACROSS = Transverse(natural_frequency=1.0, damping_ratio=0.1, load={"amplitude": 1.0})
+
+
+@pytest.mark.parametrize("method", [Auto(), Shooting(), March()])
+@pytest.mark.parametrize("body", [relaxing(0.5, 2.0), fractional(0.2, 0.5)])
+@pytest.mark.parametrize(
+    ("change", "law"),
+    [
+        ({}, Dahl(mu=0.4, stiffness=10.0)),
+        ({}, Coulomb(mu=0.4, mu_static=0.5)),
+        ({"transverse": ACROSS}, LAW),
+        ({"drive": None, "initial": Initial(x=1.0)}, LAW),
+    ],
+)
+def test_what_else_moves_a_body_that_remembers_is_refused_by_what_to_use(method, body, change, law):
+    scene = driven(10.0, 1.0, 0.1, 4.0, body=body).with_(change)
+    found = steady_state(scene, law, method=method)
+
+    assert found.status == "refused"
+    assert "relay_locus" in found.reason
+    assert "springs and dashpots" in found.reason or "leave transverse" in found.reason
+    assert method.refusal(scene.with_(body=None), law) is None

@@ -103,7 +103,7 @@ _AGREES = 1e-6
 """How far the mean of the closed orbit may be from that of the method."""
 _PRESCRIBED = "the slip is prescribed: no mass moves that a period map could follow"
 _UNDRIVEN = "the scene is undriven: its period is no number that is given"
-_BY_TABLE = "the body is known by its receptance: no period map follows it"
+_NO_MAP = "no period map follows a body that remembers: give one of springs and dashpots"
 _RESTS = "the mass rests on the belt"
 _OTHER_ORBIT = "the period map closes another orbit than the one of this steady state"
 _LOST = "the steady state is about to be lost: a multiplier of the period map is close to +1"
@@ -253,8 +253,8 @@ def _check(scene: Scene, state: SteadyState) -> None:
         raise _Refused(_PRESCRIBED)
     if scene.undriven:
         raise _Refused(_UNDRIVEN)
-    if "receptance" in scene.body_terms:
-        raise _Refused(_BY_TABLE)
+    if scene.remembers:
+        raise _Refused(_NO_MAP)
     if state.status != "ok":
         raise _Refused(f"no steady state with one mean: {state.reason}")
     if state.unique == NOT_UNIQUE:

@@ -133,8 +133,8 @@ def _decay(problem: None, tau: float, x: float, v: float) -> tuple[float, float]
 
 def _growth_of_dop853(z: float) -> float:
     """Of a velocity that decays at the rate 1."""
-    step = interpreted(dop853.stepper(dop853.carrying_nothing(_decay)))
-    return abs(float(step(None, 0.0, dop853.State(0.0, 1.0, -1.0, 0.0, 0.0, 0.0), z).v))
+    step = interpreted(dop853.stepper(_decay))
+    return abs(float(step(None, 0.0, dop853.State(0.0, 1.0, -1.0, 0.0), z).v))
 
 
 LONGEST_MARCH = 200

@@ -253,14 +253,6 @@ def by_springs(of_linear: Any, of_bent: Any) -> Any:
     return _by_field("bends", of_linear, of_bent, **INNER, fastmath=True)
 
 
-def by_relaxing(of_none: Any, of_some: Any) -> Any:
-    """The same, chosen by the field ``relaxing``.
-
-    of_some: for a body with springs that relax.
-    """
-    return _by_field("relaxing", of_none, of_some, **INNER, fastmath=True)
-
-
 def _by_field(name: str, of_empty: Any, of_filled: Any, **options: Any) -> Any:
     """By whether a field of the first argument is filled: its own, or that of what varies or of the body it holds."""
 

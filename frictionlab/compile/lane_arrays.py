@@ -176,50 +176,6 @@ def _least_in_python(lanes: Any) -> Any:
     return np.repeat(eights, LANE_COUNT)
 
 
-def _join(typing: Any, numbers: Any) -> Any:
-    if not isinstance(numbers, _types.UniTuple) or numbers.count not in (1, LANE_COUNT):
-        return None
-    alone = numbers.count == 1
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        if alone:
-            return builder.extract_value(values[0], 0)
-        lanes = _ir.Constant(VECTOR, _ir.Undefined)
-        for k in range(LANE_COUNT):
-            place = _ir.Constant(_ir.IntType(32), k)
-            lanes = builder.insert_element(lanes, builder.extract_value(values[0], k), place)
-        return lanes
-
-    return (_types.float64 if alone else LANES)(numbers), code
-
-
-def _join_in_python(numbers: Any) -> Any:
-    return numbers[0] if len(numbers) == 1 else np.array(numbers)
-
-
-def _sum_up(typing: Any, number: Any) -> Any:
-    if number not in (LANES, _types.float64):
-        return None
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        if number != LANES:
-            return values[0]
-        items = [
-            builder.extract_element(values[0], _ir.Constant(_ir.IntType(32), k)) for k in range(LANE_COUNT)
-        ]
-        while len(items) > 1:
-            items = [
-                builder.fadd(first, second) for first, second in zip(items[::2], items[1::2], strict=True)
-            ]
-        return items[0]
-
-    return _types.float64(number), code
-
-
-def _sum_in_python(number: Any) -> float:
-    return float(np.sum(number))
-
-
 def _room_for(typing: Any, count: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         return context.get_constant(_types.intp, LANE_COUNT)
@@ -251,10 +207,6 @@ with_lane = _made(_with_lane, _with_item, _with_item)
 """with_lane(lanes, place, number): replace the number in one lane; a single number is replaced whole."""
 least_of_eight = _made(_least, _least_in_python, _least_in_python)
 """least_of_eight(lanes): write the smallest number of each group of eight neighbouring lanes to all eight."""
-as_one_number = _made(_join, _join_in_python, _join_in_python)
-"""as_one_number(numbers): join eight numbers to lanes; return the number of a tuple of one."""
-summed = _made(_sum_up, _sum_in_python, _sum_in_python)
-"""summed(number): return the sum of all lanes; a single number as it is."""
 room_for = _made(_room_for, _room_in_python)
 """room_for(count): return the number of lanes of one pass over so many numbers.
 

@@ -58,7 +58,6 @@ class ModelWord(StrEnum):
     SLIP_PATH = "slip path", "deflection as a function of the slip path"
     WITH_BRISTLE = "bristle", "mass and bristle solved together (Rodas5P)"
     WITH_MEMORY = "memory", "mass and memory solved together (Rodas5P)"
-    SPRINGS = "sum of springs", "what of the body remembers followed as a sum of eight springs that relax"
     NEAR_REST = "near rest", "slip near rest in polar coordinates (Radau IIA)"
     AT_REST = "undriven rest", "undriven: at rest, where the motion from scene.initial ends"
     SLIDES = "undriven sliding", "undriven: steady sliding, which attracts"

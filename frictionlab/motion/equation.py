@@ -18,7 +18,6 @@ import numpy as np
 from frictionlab.compile.decorators import fast, fast_embedded, inner
 from frictionlab.compile.dispatch import (
     by_dimension,
-    by_relaxing,
     by_springs,
     by_variation,
     compilable,
@@ -27,7 +26,6 @@ from frictionlab.compile.dispatch import (
 from frictionlab.compile.lane_arrays import friction_by_lane
 from frictionlab.compile.stack import items_of
 from frictionlab.motion.events import reference_acceleration
-from frictionlab.motion.relaxing import along_x1, held_back, held_back_curvature, held_back_impulse
 from frictionlab.motion.waves import (
     number_at,
     wave_at,
@@ -282,7 +280,7 @@ def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
     return BodyNumbers(
         body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
         body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
-        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying, body.bends, body.relaxing,
+        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying, body.bends,
     )  # fmt: skip
 
 
@@ -346,8 +344,7 @@ def _without_loads(body: BodyNumbers, zero: float) -> bool:
 
 
 _free_on_the_line = by_dimension(_without_loads, lambda body, zero: False)
-_free_of_loads = by_variation(lambda body, zero: _free_on_the_line(body, zero), lambda body, zero: False)
-is_free = by_relaxing(lambda body, zero: _free_of_loads(body, zero), lambda body, zero: False)
+is_free = by_variation(lambda body, zero: _free_on_the_line(body, zero), lambda body, zero: False)
 """is_free(body, zero): whether nothing changes in time."""
 
 
@@ -393,7 +390,8 @@ def mean_friction(impulse: Any, time: float) -> Any:
 
 
 @inner
-def _held_by_friction(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
+def holding_force(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
+    """Return the force of friction that keeps a mass at x at rest on the belt, its first and second derivative."""
     carried = belt_velocity(body, belt_speed, now) + 0.0 * x
     pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
     jerk = belt_jerk(body, belt_speed, now) + 0.0 * x
@@ -406,19 +404,6 @@ def _held_by_friction(body: BodyNumbers, belt_speed: float, now: Instant, x: Any
         bend - restoring_force(beside, pushed, jerk) - belt_snap(body, belt_speed, now),
     )
 
-
-def _held_against_relaxing(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
-    held, rate, bend = _held_by_friction(body, belt_speed, now, x)
-    carried, pushed = belt_velocity(body, belt_speed, now), belt_acceleration(body, belt_speed, now)
-    force, rise, turn = held_back(body, belt_speed, now.tau, carried.real, pushed.real)
-    return held - along_x1(force, x), rate - along_x1(rise, x), bend - along_x1(turn, x)
-
-
-holding_force = by_relaxing(
-    lambda body, belt_speed, now, x: _held_by_friction(body, belt_speed, now, x), _held_against_relaxing
-)
-"""holding_force(body, belt_speed, now, x): force of friction that keeps a mass at x at rest on the belt, its
-first and its second derivative."""
 
 _belt_bound = by_variation(
     lambda body, order: 0.0, lambda body, order: wave_bound(body.varying.table, body.varying.belt, order)
@@ -458,31 +443,12 @@ def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
 _more = by_springs(lambda body, belt_speed, x: 0.0, _more_of_bends)
 
 
-def _bound_of_relaxing(body: BodyNumbers, belt_speed: float) -> float:
-    velocity = belt_velocity(body, belt_speed, instant_at(body, body.relaxing.since)).real
-    return held_back_curvature(body, velocity, _belt_bound(body, 1))
-
-
-_curvature_of_relaxing = by_relaxing(lambda body, belt_speed: 0.0, _bound_of_relaxing)
-
-
 @inner
 def holding_curvature(body: BodyNumbers, belt_speed: float, x: Any) -> float:
-    """Return a bound on the second derivative of ``holding_force``, for a mass at x at the present time.
-
-    Relaxing forces must be known at that time.
-    """
+    """Return a bound on the second derivative of ``holding_force``, for a mass at x at the present time."""
     springs = (body.stiffness_mean + abs(body.stiffness_split)) * _belt_bound(body, 1)
     dashpots = (body.damping_mean + abs(body.damping_split)) * _belt_bound(body, 2)
-    relaxing = _curvature_of_relaxing(body, belt_speed)
-    return (
-        load_curvature(body)
-        + springs
-        + dashpots
-        + _belt_bound(body, 3)
-        + _more(body, belt_speed, x)
-        + relaxing
-    )
+    return load_curvature(body) + springs + dashpots + _belt_bound(body, 3) + _more(body, belt_speed, x)
 
 
 GAUSS = np.array([0.0, 0.5384693101056831, 0.906179845938664])
@@ -528,8 +494,7 @@ def holding_impulse(body: BodyNumbers, belt_speed: float, start: float, end: flo
     first, last = instant_at(body, start), instant_at(body, end)
     gained = belt_velocity(body, belt_speed, last) - belt_velocity(body, belt_speed, first)
     springs = linear_force(body, positions, travel) + _bent_impulse(body, belt_speed, start, end, x)
-    relaxing = held_back_impulse(body, belt_speed, start, end, travel.real)
-    return load_impulse(body, start, end) - springs - gained - along_x1(relaxing, x)
+    return load_impulse(body, start, end) - springs - gained
 
 
 @inner

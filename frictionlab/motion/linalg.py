@@ -61,16 +61,6 @@ def multiply(matrix: Any, z: Any, out: Any) -> None:
 
 
 @inner
-def add_product(factor: float, left: Any, right: Any, out: Any) -> None:
-    """Add ``factor`` times the product of two square matrices to ``out``, which is neither of them."""
-    n = left.shape[0]
-    for row in range(n):
-        for k in range(n):
-            for column in range(n):
-                out[row, column] = out[row, column] + factor * left[row, k] * right[k, column]
-
-
-@inner
 def invert(matrix: Any, inverse: Any) -> bool:
     """Write the inverse by Gauss-Jordan elimination with row pivots.
 

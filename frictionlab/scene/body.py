@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -29,31 +28,11 @@ class Bends(NamedTuple):
     cosine: float = 0.0
 
 
-class Relaxing(NamedTuple):
-    """Springs in series with dashpots, beside those of the body along x1: forces q' = stiffness x1' - rate q.
-
-    stiffness, rate, force: tuples of n numbers each; numbers in lanes if kernels follow slip by DOP853.
-    force: those that hold a mass back at the time ``since``, if they are known. hardest: stiffness of all
-    springs together, which fast motion feels. lasting: all of them together as a dashpot, which slow motion
-    feels. fastest: largest of the rates.
-    """
-
-    stiffness: Any
-    rate: Any
-    force: Any
-    since: float
-    hardest: float
-    lasting: float
-    fastest: float
-
-
 class Mass(NamedTuple):
     """Numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau)).
 
     varying: everything that changes in time, if that is more than these forces, which are then the harmonics
-    of the loads at this frequency; else empty. bends: empty if springs and dashpots are linear. relaxing:
-    empty if nothing of the body remembers. hardening: force over x1 of the elements that remember, at this
-    frequency.
+    of the loads at this frequency; else empty. bends: empty if springs and dashpots are linear.
     """
 
     damping: float
@@ -66,8 +45,6 @@ class Mass(NamedTuple):
     transverse_force: complex
     varying: Any = ()
     bends: Any = ()
-    relaxing: Any = ()
-    hardening: complex = 0j
 
 
 def one_harmonic_motions(mass: Mass, rub: float = 0.0) -> list[complex]:
@@ -101,24 +78,6 @@ def _balanced(
     return tuple(complex(force / dynamic[i]) for i in np.flatnonzero(missing[:-1] * missing[1:] < 0.0))
 
 
-def with_relaxing(mass: Mass, stiffness: Sequence[float], rate: Sequence[float]) -> Mass:
-    """Return the mass with springs of such stiffness that relax at these rates, nothing deflected."""
-    hardening = sum(
-        k * 1j * mass.frequency / complex(r, mass.frequency) for k, r in zip(stiffness, rate, strict=True)
-    )
-    lasting = sum(k / r for k, r in zip(stiffness, rate, strict=True))
-    relaxing = Relaxing(
-        tuple(stiffness),
-        tuple(rate),
-        (0.0,) * len(rate),
-        0.0,
-        float(sum(stiffness)),
-        float(lasting),
-        max(rate),
-    )
-    return mass._replace(relaxing=relaxing, hardening=complex(hardening))
-
-
 def with_free_motion(mass: Mass) -> Mass:
     """Return the mass with its motion without friction, that of the least amplitude, in ``bends``."""
     free = next(iter(one_harmonic_motions(mass)), 0j)
@@ -143,8 +102,7 @@ class BodyNumbers(NamedTuple):
     ``load`` and ``normal_load`` are the numbers of motion/equation.py, where they become functions of time;
     elsewhere ``normal_load``, the mean, only measures accuracies and step sizes.
 
-    bends: empty if springs and dashpots are linear; else there is no reference along x1. relaxing: empty if
-    nothing of the body remembers; its forces are then those of the deviation.
+    bends: empty if springs and dashpots are linear; else there is no reference along x1.
     """
 
     damping_mean: float
@@ -163,7 +121,6 @@ class BodyNumbers(NamedTuple):
     prescribed: bool = False
     varying: Any = ()
     bends: Any = ()
-    relaxing: Any = ()
 
 
 def on_the_line(mass: Mass, periods: float = 1.0) -> BodyNumbers:
@@ -183,7 +140,7 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
     """Return the body with both motions, of a mass as kernels have it."""
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
-    reference, reference_2 = _friction_free(*along, mass.hardening), _friction_free(*across, 0j)
+    reference, reference_2 = _friction_free(*along), _friction_free(*across)
     if len(mass.bends) > 0:
         reference = 0j
     force, force_2 = mass.force, mass.transverse_force
@@ -206,15 +163,12 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> BodyNumbers:
         prescribed=False,
         varying=mass.varying,
         bends=mass.bends,
-        relaxing=mass.relaxing,
     )
 
 
-def _friction_free(
-    damping: float, stiffness: float, frequency: float, force: complex, hardening: complex
-) -> complex:
+def _friction_free(damping: float, stiffness: float, frequency: float, force: complex) -> complex:
     """Compute the phasor of the friction-free response; 0 at undamped resonance, where it has no bound."""
-    dynamic = complex(stiffness - frequency**2, damping * frequency) + hardening
+    dynamic = complex(stiffness - frequency**2, damping * frequency)
     return force / dynamic if dynamic != 0 else 0j
 
 
@@ -244,7 +198,7 @@ def bent_slopes(body: BodyNumbers, x: Any, v: Any) -> BodyNumbers:
         body.damping_mean + dashpot, body.damping_split + dashpot, body.stiffness_mean + spring,
         body.stiffness_split + spring, body.normal_load, body.frequency, body.load_sine, body.load_cosine,
         body.balanced_sine, body.balanced_cosine, body.reference_sine, body.reference_cosine, body.periods,
-        body.prescribed, body.varying, (), body.relaxing,
+        body.prescribed, body.varying, (),
     )  # fmt: skip
 
 

@@ -19,9 +19,6 @@ If no dashpot damps and friction never falls, E still never grows. The map of a 
 states apart, and its fixed points form a convex set. A fixed point that attracts its neighbours is therefore
 the only one.
 
-Parts of the body that remember only take energy: springs that relax add the sum of q^2/(2 k) to E, which
-decays.
-
 None of this holds for springs and dashpots that are not linear: a Duffing oscillator has several periodic
 motions.
 """

@@ -100,6 +100,11 @@ def test_the_end_of_a_range_is_differentiated_from_within() -> None:
         (fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=1), COULOMB, "the scene is undriven"),
         (fl.Scene(slip={"velocity_amplitude": 2, "frequency": 1}, belt_speed=1), DAHL, "prescribed"),
         (STICKS.with_(belt_speed=0.0, **{"drive.amplitude": 1}), COULOMB, "no steady state with one mean"),
+        (
+            SCENE.with_(body={"fractional": {"coefficient": 0.2, "order": 0.5}}),
+            COULOMB,
+            "no period map follows",
+        ),
         (SCENE.with_(damping_ratio=0.0, **{"drive.frequency": 1.3}), COULOMB, ""),
     ],
 )

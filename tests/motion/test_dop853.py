@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from frictionlab.compile.decorators import fast, njit
-from frictionlab.motion.steppers.dop853 import State, carrying_nothing, interpolant, motion_within, stepper
+from frictionlab.motion.steppers.dop853 import State, interpolant, motion_within, stepper
 
 
 class Power(NamedTuple):
@@ -24,13 +24,13 @@ def _power_rates(problem, tau, x, v):
     return tau**problem.power - problem.stiffness * x, tau**problem.power
 
 
-_power_step = stepper(carrying_nothing(_power_rates))
+_power_step = stepper(_power_rates)
 
 
 @njit
 def power_step(problem, tau, x, v, h):
     a, f = _power_rates(problem, tau, x, v)
-    return _power_step(problem, tau, State(x, v, a, f, 0.0, 0.0), h)
+    return _power_step(problem, tau, State(x, v, a, f), h)
 
 
 class Belt(NamedTuple):
@@ -49,8 +49,7 @@ def _belt_rates(problem, tau, x, v):
     return problem.load * turn - x - 0.2 * v - problem.friction * rub, rub
 
 
-_carrying_rates = carrying_nothing(_belt_rates)
-_belt_step, _belt_dense = stepper(_carrying_rates), interpolant(_carrying_rates)
+_belt_step, _belt_dense = stepper(_belt_rates), interpolant(_belt_rates)
 
 
 @njit
@@ -59,7 +58,7 @@ def belt_run(problem, x, v, end, steps):
     h, friction_impulse = end / steps, 0j
     for i in range(steps):
         a, f = _belt_rates(problem, i * h, x, v)
-        taken = _belt_step(problem, i * h, State(x, v, a, f, 0.0, 0.0), h)
+        taken = _belt_step(problem, i * h, State(x, v, a, f), h)
         x, v, friction_impulse = taken.x, taken.v, friction_impulse + taken.friction_impulse
     return x, v, friction_impulse
 
@@ -68,7 +67,7 @@ def belt_run(problem, x, v, end, steps):
 def belt_within(problem, x, v, h, share):
     """Position and velocity a share into one step from tau = 0."""
     a, f = _belt_rates(problem, 0.0, x, v)
-    dense = _belt_dense(problem, 0.0, State(x, v, a, f, 0.0, 0.0), h)
+    dense = _belt_dense(problem, 0.0, State(x, v, a, f), h)
     return motion_within(dense, share * h)
 
 
@@ -76,7 +75,7 @@ def belt_within(problem, x, v, h, share):
 def belt_errors(problem, x, v, h):
     """The error estimates of one step of the velocity, of order 5 and 3."""
     a, f = _belt_rates(problem, 0.0, x, v)
-    taken = _belt_step(problem, 0.0, State(x, v, a, f, 0.0, 0.0), h)
+    taken = _belt_step(problem, 0.0, State(x, v, a, f), h)
     return abs(taken.v_error5), abs(taken.v_error3)
 
 

@@ -63,7 +63,7 @@ def test_every_method_answers_as_for_the_changed_scene_where_a_function_is_repla
 
 
 MECHANICS = ("restoring_force", "load_sine", "load_cosine", "balanced_sine", "balanced_cosine")
-ADDRESSES = {"scene/body.py", "motion/equation.py", "motion/relaxing.py"}
+ADDRESSES = {"scene/body.py", "motion/equation.py"}
 
 
 def uses_of(names: tuple[str, ...]) -> set[str]:
@@ -117,8 +117,6 @@ masses = st.builds(
     transverse_force=amplitudes,
     varying=st.just(()),
     bends=st.just(()),
-    relaxing=st.just(()),
-    hardening=st.just(0j),
 )
 times, speeds = st.floats(0.5, 9.0), st.floats(-3.0, 3.0)
 STEP = 1e-4

@@ -13,7 +13,6 @@ from frictionlab.compile.dispatch import (
     as_argument,
     by_contact,
     by_law,
-    by_relaxing,
     by_springs,
     by_stepper,
     by_variation,
@@ -43,7 +42,6 @@ from frictionlab.motion.equation import (
 )
 from frictionlab.motion.maps.memory_state import pulled
 from frictionlab.motion.orbit.recorder import panel_writer
-from frictionlab.motion.relaxing import elements_of, with_force
 from frictionlab.motion.steppers import dop853, rk4
 from frictionlab.motion.steppers.moreau import moreau_step
 from frictionlab.motion.steppers.rk4 import rk4_step
@@ -254,7 +252,7 @@ def _slopes_at(body: BodyNumbers, x: Any, v: Any) -> Any:
 
 
 _acceleration_under = as_argument(acceleration_under)
-_smooth_step = dop853.stepper(dop853.carrying_nothing(_smooth_rates))
+_smooth_step = dop853.stepper(_smooth_rates)
 
 
 def _by_moreau(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
@@ -273,7 +271,7 @@ def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     body, belt_speed = problem.body, problem.belt_speed
     # The slopes at the start are found anew: the last step may have been repeated, or ended at a zero of velocity.
     a, mu = _smooth_rates(problem, start.tau, start.x, start.v)
-    end = _smooth_step(problem, start.tau, dop853.State(start.x, start.v, a, mu, 0.0, 0.0), h)
+    end = _smooth_step(problem, start.tau, dop853.State(start.x, start.v, a, mu), h)
     growth = growth_of(body, end, problem.stepper.accuracy)
     before = slip(body, belt_speed, instant_at(body, start.tau), start.v)
     # Slip may have come and gone within the step: the error estimate can be blind to that.
@@ -289,48 +287,13 @@ def _by_sdirk2(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     return end
 
 
-_advance = by_stepper(
+advance = by_stepper(
     {
         Moreau: _by_moreau,
         Rk4: _by_rk4,
         Smoothed: _by_dop853,
         Sdirk2: _by_sdirk2,
     }
-)
-
-
-@inner
-def first_force(law: Any) -> int:
-    """Where in what is remembered the forces of what of the body relaxes begin, behind those of the contact."""
-    return max(1, count_of(law))
-
-
-def _advance_with_forces(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
-    """Forces first to the middle of the step, at the velocity of its start; at the end by the mean of both."""
-    law, body, memory, ahead = problem.law, problem.body, problem.memory, problem.ahead
-    first, pull = first_force(law), 0.0
-    for k in range(elements_of(body)):
-        pull += _relaxed(body, k, memory[first + k].real, start.v.real, 0.5 * h)
-    pulled = with_force(body, pull, start.tau)
-    stepped = MarchProblem(law, pulled, problem.belt_speed, problem.stepper, problem.grid, memory, ahead)
-    end = _advance(stepped, start, h)
-    for k in range(elements_of(body)):
-        mean = 0.5 * (start.v.real + end.v.real)
-        ahead[first + k] = _relaxed(body, k, memory[first + k].real, mean, h) + 0.0 * memory[first + k]
-    return end
-
-
-@inner
-def _relaxed(body: BodyNumbers, k: int, force: float, velocity: float, lasts: float) -> float:
-    """One force after a while at this velocity."""
-    rate = body.relaxing.rate[k]
-    gone = -math.expm1(-rate * lasts)
-    return force + gone * (body.relaxing.stiffness[k] * velocity / rate - force)
-
-
-advance = by_relaxing(
-    lambda problem, start, h: _advance(problem, start, h),
-    _advance_with_forces,
 )
 """advance(problem, start, h): the end of a step."""
 

@@ -15,10 +15,9 @@ import numpy as np
 from frictionlab.compile.decorators import embedded, inner
 from frictionlab.compile.dispatch import by_variation, length
 from frictionlab.compile.stack import count_of
-from frictionlab.methods.march.adapters import MarchProblem, advance, first_force, note_step
+from frictionlab.methods.march.adapters import MarchProblem, advance, note_step
 from frictionlab.motion.equation import in_piece, instant_at, piece_ends, pieces_of, slip
 from frictionlab.motion.orbit.recorder import Track
-from frictionlab.motion.relaxing import elements_of
 from frictionlab.motion.steppers.step import StepEnd, StepStart
 
 NOTHING = np.zeros(1)
@@ -122,9 +121,6 @@ def slip_trace(trace: SlipTrace, w: Any) -> SlipTrace:
 def keep_memory(problem: MarchProblem) -> None:
     """What the law remembers at the end of a step is what it remembers at the start of the next."""
     for k in range(count_of(problem.law)):
-        problem.memory[k] = problem.ahead[k]
-    first = first_force(problem.law)
-    for k in range(first, first + elements_of(problem.body)):
         problem.memory[k] = problem.ahead[k]
 
 

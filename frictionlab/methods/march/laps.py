@@ -32,7 +32,6 @@ from frictionlab.motion.equation import (
     runs_away,
 )
 from frictionlab.motion.orbit.recorder import Track, track_of
-from frictionlab.motion.relaxing import hardest
 from frictionlab.motion.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart, squared
 from frictionlab.scene.body import BodyNumbers
 
@@ -257,7 +256,7 @@ def path_stuck(law: Any, body: BodyNumbers, settings: MarchSettings, lap: Lap) -
         return 0.0
     carried = belt_advance(body, settings.belt_speed)
     carries = abs(carried)
-    if carries == 0.0 or look_ahead(body) < 1e300 or hardest(body) > 0.0:
+    if carries == 0.0 or look_ahead(body) < 1e300:
         return 0.0
     drift = carries * (body.stiffness_mean + body.stiffness_split) / body.normal_load
     # Not beyond release: one lap less than what friction can hold allows.
@@ -273,7 +272,7 @@ def march_laps(
     # What acts and what is remembered are bare pointers to steppers: the first to an array kept until the end, the
     # others to this function's stack.
     grid, item = grid_of(body, settings, start.x), start.z[0]
-    memory, ahead = room(law, 1, 2, item), room(law, 1, 2, item)  # and a spring that relaxes
+    memory, ahead = room(law, 1, 1, item), room(law, 1, 1, item)
     problem = MarchProblem(law, body, settings.belt_speed, stepper, items_of(grid), memory, ahead)
     laps, track = laps_of(settings), track_of(settings.room)
     for k in range(start.z.size):

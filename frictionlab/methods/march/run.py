@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -39,7 +38,6 @@ from frictionlab.motion.equation import mean_friction, quickest_of, span
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
-from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
 LONGEST_PERIOD = 8
@@ -78,7 +76,7 @@ class MarchRun:
 
     def __init__(self, scene: Scene, law: FrictionLaw, stepper: StepperName) -> None:
         self.scene, self.law, self.stepper, self.facts = scene, law, stepper, STEPPERS[stepper]
-        self.mass: Mass = mass_of(scene)
+        self.mass: Mass = scene.mass()
         self.through_rest = steps_through_rest(scene, law, self.facts)
         start = scene.initial
         starts_across = start is not None and (start.x2 != 0.0 or start.velocity2 != 0.0)
@@ -90,9 +88,7 @@ class MarchRun:
         self.lightest, self.heaviest = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
-        relaxing = self.mass.relaxing.stiffness if self.mass.relaxing else []
-        self._fresh = np.concatenate([first_memory(scene, law), np.zeros(len(relaxing))])
-        self._spring = np.concatenate([memory_stiffness(scene, law), [1.0 / each for each in relaxing]])
+        self._fresh, self._spring = first_memory(scene, law), memory_stiffness(scene, law)
         self.start = self.place(scene.start if scene.undriven else scene.initial)
         # on a belt at rest the mass stays wherever a run left it
         self.forgets = scene.belt_speed != 0.0
@@ -142,16 +138,10 @@ class MarchRun:
             self.law, self.facts, self.drive_period / pace.steps / lightest_contact(self.scene)
         )
 
-    @property
-    def _slowest(self) -> float:
-        """The longest time in which a force of what of the body remembers relaxes."""
-        relaxing: Any = self.mass.relaxing
-        return 1.0 / min(relaxing.rate) if relaxing else 0.0
-
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
         damping = self.mass.damping if self.straight else min(self.mass.damping, self.mass.transverse_damping)
-        slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping, self._slowest)
+        slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping)
         return int(min(2000.0, max(50.0, slow / self.drive_period)))
 
     def _marched(self, pace: Resolution, way: MarchSettings, place: MarchState) -> MarchHistory:

@@ -19,7 +19,6 @@ from frictionlab.motion.contact import ARCTAN, TANH, friction_of, rate_of
 from frictionlab.motion.steppers import rk4
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.linear import velocity_scale
-from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
 StepperName = Literal["moreau", "rk4", "smoothed", "sdirk2"]
@@ -252,10 +251,9 @@ def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
 
 def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
     """The largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
-    mass = mass_of(scene)
+    mass = scene.mass()
     heaviest = mass.normal_load * shares_of_load(scene)[1]
-    hardest = mass.relaxing.hardest if mass.relaxing else 0.0
-    stiffness = max(mass.stiffness + hardest, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)
+    stiffness = max(mass.stiffness, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)
     damping = max(mass.damping, mass.transverse_damping) + heaviest * contact_damping(scene, law)
     return max(math.sqrt(stiffness), damping)
 

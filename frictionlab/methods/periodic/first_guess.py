@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_relaxing
 from frictionlab.motion.equation import belt_swing, equilibrium, free_cosine, free_sine, span
-from frictionlab.motion.linalg import add_product, dimension, invert
-from frictionlab.motion.relaxing import elements_of
+from frictionlab.motion.linalg import dimension, invert
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -56,68 +54,15 @@ def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, 
     jacobian[at + 1, at + 1] = decay * (c - sn * half) - 1.0
 
 
-def _free_with_relaxing(body: BodyNumbers, rubbing: float, jacobian: Any) -> None:
-    """The same of x1 and what of the body relaxes: the exponential of their equations, by squaring."""
-    n, m, times = jacobian.shape[0], elements_of(body), 0
-    flow = np.zeros((n, n))
-    root = math.sqrt(body.stiffness_mean + body.stiffness_split)
-    flow[0, 1], flow[1, 0] = root, -root
-    flow[1, 1] = -(body.damping_mean + body.damping_split + rubbing)
-    for k in range(m):
-        row, pull = n - m + k, math.sqrt(body.relaxing.stiffness[k])
-        flow[1, row], flow[row, 1], flow[row, row] = -pull, pull, -body.relaxing.rate[k]
-    most = 0.0
-    for row in range(n):
-        for column in range(n):
-            most = max(most, abs(flow[row, column]))
-    step = span(body)
-    while most * step > 0.1 / n and times < 60:
-        step, times = 0.5 * step, times + 1
-    # less the identity, which would drown what is small: (1 + a)^2 - 1 = a (2 + a)
-    term, once, identity = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
-    for row in range(n):
-        identity[row, row] = 1.0
-        for column in range(n):
-            once[row, column] = step * flow[row, column]
-            term[row, column] = once[row, column]
-    for order in range(2, 8):
-        following = np.zeros((n, n))
-        add_product(step / order, term, flow, following)
-        add_product(1.0, following, identity, once)
-        term = following
-    for _ in range(times):
-        squared = np.zeros((n, n))
-        add_product(1.0, once, once, squared)
-        add_product(2.0, once, identity, squared)
-        once = squared
-    for row in range(n):
-        for column in range(n):
-            if once[row, column] != 0.0:
-                jacobian[row, column] = once[row, column]
-
-
-_free_along = by_relaxing(
-    lambda body, rubbing, jacobian: _free_block(
-        body.damping_mean + body.damping_split + rubbing,
-        body.stiffness_mean + body.stiffness_split,
-        span(body),
-        jacobian,
-        0,
-    ),
-    _free_with_relaxing,
-)
-"""_free_along(body, rubbing, jacobian): monodromy minus identity of motion along x1."""
-
-
 @inner
 def free_inverse(body: BodyNumbers, rubbing: float, inverse: Any, zero: Any) -> None:
     """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
-    n, d = inverse.shape[0], dimension(zero)
-    period = span(body)
+    n, d, period = inverse.shape[0], dimension(zero), span(body)
     jacobian = np.zeros((n, n))
     for row in range(2 * d, n):
         jacobian[row, row] = -1.0  # a bristle remembers nothing of a period ago
-    _free_along(body, rubbing, jacobian)
+    damping, stiffness = body.damping_mean + body.damping_split, body.stiffness_mean + body.stiffness_split
+    _free_block(damping + rubbing, stiffness, period, jacobian, 0)
     if d == 2:
         damping, stiffness = (
             body.damping_mean - body.damping_split,

@@ -62,8 +62,6 @@ def _merged(mask: Any, new: Node, old: Node) -> Node:
         select(mask, a.v, b.v),
         select(mask, a.a, b.a),
         select(mask, a.f, b.f),
-        0.0,
-        0.0,
     )
     return Node(
         select(mask, new.tau, old.tau),
@@ -117,7 +115,7 @@ def begin_lanes(law: Any, body: BodyNumbers, rows: LaneRows, longest: float) -> 
     y, u = unpack(body, state, body.reference_sine)
     problem = Flow(law, body, belt_speed, 1.0, zero, zero, zero + 1.0)
     a, f = rates(problem, zero, y, u)
-    node = node_at(problem, zero, State(y, u, a, f, 0.0, 0.0))
+    node = node_at(problem, zero, State(y, u, a, f))
     return LaneWay(problem, node, zero + 0.1 * longest, 0.0 * y, node.speed)
 
 
@@ -143,7 +141,7 @@ def advance_lanes(way: LaneWay, going: Any, limits: LaneLimits) -> LaneWay:
     h = least_of_eight(h) if limits.alike else h
     taken, tau = step(problem, node.tau, node.state, h), node.tau + h
     a, f = rates(problem, tau, taken.x, taken.v)
-    new = node_at(problem, tau, State(taken.x, taken.v, a, f, 0.0, 0.0))
+    new = node_at(problem, tau, State(taken.x, taken.v, a, f))
     growth = growth_of(problem.body, taken, limits.accuracy)
     growth = select(dips(node.w, node.rate, new.w, new.rate, h), min(growth, 0.5), growth)
     growth = least_of_eight(growth) if limits.alike else growth

@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing, by_scalars
+from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars
 from frictionlab.compile.stack import count_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
@@ -33,14 +33,6 @@ from frictionlab.motion.maps.path import path_map
 from frictionlab.motion.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.motion.maps.sliding import Mapped, sliding_map
 from frictionlab.motion.maps.stick import periods_at_rest
-from frictionlab.motion.relaxing import (
-    elements_of,
-    energy_unit,
-    in_one_number,
-    read_forces,
-    reference_force,
-    write_forces,
-)
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -69,12 +61,9 @@ MAP_KINDS = {
 """By the kind of memory, and that of a bristle whose deflection the slip path tells."""
 
 
-def map_kind(law: FrictionLaw, pathless: bool) -> str:
-    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory.
-
-    pathless: in the plane, or on a body that remembers.
-    """
-    exact = not pathless and isinstance(law, BristleLaw) and law.exact_path()
+def map_kind(law: FrictionLaw, planar: bool) -> str:
+    """Return which period map serves a law: that of an exact path along a line, else that of its kind of memory."""
+    exact = not planar and isinstance(law, BristleLaw) and law.exact_path()
     return "exact path" if exact else law.memory_kind
 
 
@@ -120,51 +109,7 @@ def size_of_deviation(normal_load: float, state: Any) -> float:
 
 
 size_of = by_law(lambda law, zero: 2 * dimension(zero), _size_with_memory, _size_with_memory)
-"""size_of(law, zero): how many numbers a state is, but for what of the body relaxes."""
-
-
-@inner
-def whole_size_of(law: Any, body: BodyNumbers, zero: Any) -> int:
-    """With that: its forces are the last numbers of a state."""
-    return size_of(law, zero) + elements_of(body)
-
-
-def _pack_forces(body: BodyNumbers, state: Any, rows: Any, first: int) -> None:
-    m = elements_of(body)
-    for k in range(m):
-        state[state.size - m + k] = energy_unit(body, k) * rows[first + k].real
-
-
-pack_forces = by_relaxing(lambda body, state, rows, first: None, _pack_forces)
-"""pack_forces(body, state, rows, first): put relaxing forces, from this row on, into a state."""
-
-
-def _unpack_forces(body: BodyNumbers, state: Any, rows: Any, first: int) -> None:
-    m = elements_of(body)
-    for k in range(m):
-        rows[first + k] = state[state.size - m + k] / energy_unit(body, k)
-
-
-unpack_forces = by_relaxing(lambda body, state, rows, first: None, _unpack_forces)
-"""unpack_forces(body, state, rows, first): the other way round."""
-
-
-def _relaxed(body: BodyNumbers, state: Any) -> None:
-    # what holds the friction-free motion back at tau = 0 is taken away
-    write_forces(body, state, -reference_force(in_one_number(body), 0.0))
-
-
-relax = by_relaxing(lambda body, state: None, _relaxed)
-"""relax(body, state): let no relaxing force act at tau = 0."""
-
-
-def _unstretched(body: BodyNumbers, state: Any) -> None:
-    for k in range(elements_of(body)):
-        state[state.size - 1 - k] = 0.0
-
-
-deviate_evenly = by_relaxing(lambda body, state: None, _unstretched)
-"""deviate_evenly(body, state): relaxing forces are those of the friction-free motion, as in a steady shift of it."""
+"""size_of(law, zero): how many numbers a state is."""
 
 coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
@@ -207,11 +152,8 @@ unit_of_scalars = by_scalars(lambda law, body, zero: 1e300, _smallest_unit)
 def _image_without_memory(case: Case, state: Any, residual: Any, stepping: Stepping) -> Mapped:
     """Its steps are not kept."""
     y, u = unpack(case.body, state, case.zero)
-    image = sliding_map(case, y, u, read_forces(case.body, state), stepping.accuracy, stepping.track)
+    image = sliding_map(case, y, u, stepping.accuracy, stepping.track)
     pack(case.body, residual, image.y - y, image.u - u)
-    write_forces(case.body, residual, image.forces)
-    for row in range(residual.size - elements_of(case.body), residual.size):
-        residual[row] = residual[row] - state[row]
     return image
 
 
@@ -221,12 +163,10 @@ def _image_with_memory(case: Case, state: Any, residual: Any, stepping: Stepping
     work = workspace(law, zero, contact_kind(body))
     measure_scales(law, body, work, zero)
     unpack_memory(law, body, work, state, zero)
-    unpack_forces(body, state, work.start, MEMORY + count_of(law))
     cut_back(law, work)
     image = memory_map(case, y, u, work, stepping)
     pack(body, residual, image.y - y, image.u - u)
     pack_memory(law, body, work, residual, zero)
-    pack_forces(body, residual, work.start, MEMORY + count_of(law))
     for row in range(2 * dimension(zero), residual.size):
         residual[row] = residual[row] - state[row]
     return image
@@ -244,7 +184,7 @@ def image_by_path(case: Case, state: Any, residual: Any, stepping: Stepping) -> 
     image = path_map(case, y, u, z, stepping)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
-    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps, 0.0)
+    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
 
 
 paced_image = by_law(_image_without_memory, _image_with_memory, _image_with_memory)
@@ -259,17 +199,7 @@ def _rest_with_a_bristle(law: Any, body: BodyNumbers, belt_speed: float, y: Any)
     return 1.0
 
 
-_periods_at_rest = by_relaxing(
-    lambda body, law, belt_speed, y: periods_at_rest(law, body, belt_speed, y),
-    # the force of what relaxes grows as nobody looks at there
-    lambda body, law, belt_speed, y: 1.0,
-)
-
-rest_of = by_law(
-    lambda law, body, belt_speed, y: _periods_at_rest(body, law, belt_speed, y),
-    _rest_with_a_bristle,
-    _rest_with_a_bristle,
-)
+rest_of = by_law(periods_at_rest, _rest_with_a_bristle, _rest_with_a_bristle)
 """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
 
 
@@ -300,8 +230,7 @@ remember = by_law(
 def start_of(law: Any, body: BodyNumbers, state: Any, x: Any, v: Any, z: Any) -> None:
     """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z.
 
-    With another memory, z is the velocity of steady sliding that it remembers. Nothing of the body remembers.
+    With another memory, z is the velocity of steady sliding that it remembers.
     """
     pack(body, state, x - body.reference_cosine, v - body.frequency * body.reference_sine)
     remember(law, body, state, z)
-    relax(body, state)

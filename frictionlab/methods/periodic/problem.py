@@ -40,9 +40,9 @@ from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import (
     MAP_KINDS,
     map_kind,
+    size_of,
     size_of_deviation,
     unpack,
-    whole_size_of,
 )
 from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
@@ -57,7 +57,6 @@ from frictionlab.scene.signals import Signal
 from frictionlab.theory.linear import friction_free_response, velocity_scale
 from frictionlab.theory.rest import falls_slower_than_dashpots, falls_slowly, is_convergent, resonates_once
 from frictionlab.theory.sliding_stability import SHORT, slides_saturated
-from frictionlab.theory.springs import BEST, mass_of
 from frictionlab.values.quantities import Floats
 
 
@@ -126,11 +125,11 @@ FINEST = 1e-15
 class PeriodicProblem:
     """The kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
 
-    tolerance: on the mean friction. which: of the sums of springs for what of the body remembers.
+    tolerance: on the mean friction.
     """
 
-    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, which: int = BEST) -> None:
-        self.mass, self.law = mass_of(scene, which), law
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
+        self.mass, self.law = scene.mass(), law
         self.kernel: Any = answer_curve
         self.falls_slowly = falls_slowly(scene, law)
         check_attraction = law.count() > 0 and self.falls_slowly
@@ -150,22 +149,18 @@ class PeriodicProblem:
             and scene.signals().normal_load == Signal()
             and slides_saturated(law)
         )
-        if constant and self.body.varying and not self.body.relaxing:
+        if constant and self.body.varying:
             self.body = _with_free_state(scene, law, self.body)
         self.maps = table_of_maps(law, self.body)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
-        self.size = interpreted(whole_size_of)(law, self.body, self.zero)  # of a state
-        self.kind = map_kind(law, isinstance(self.zero, complex) or bool(self.body.relaxing))
+        self.size = interpreted(size_of)(law, self.zero)  # of a state
+        self.kind = map_kind(law, isinstance(self.zero, complex))
         self._slides: dict[float, tuple[complex, complex]] = {}  # places, by the friction that shifts them
 
     @property
     def by_implicit_steps(self) -> Self | None:
         """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
-        if (
-            not (isinstance(self.zero, complex) and self.goal.contracts)
-            or self.body.varying
-            or self.body.relaxing
-        ):
+        if not (isinstance(self.zero, complex) and self.goal.contracts) or self.body.varying:
             return None
         other = copy.copy(self)
         other.kernel = answer_near_rest
@@ -196,12 +191,7 @@ class PeriodicProblem:
     def in_lanes(self, points: int) -> bool:
         """Whether eight are answered at once: motions in the plane that converge, without memory, under loads of one
         sine, of a curve that has more than a few points."""
-        planar = (
-            isinstance(self.zero, complex)
-            and self.kernel is answer_curve
-            and not self.body.varying
-            and not self.body.relaxing
-        )
+        planar = isinstance(self.zero, complex) and self.kernel is answer_curve and not self.body.varying
         return points >= FEWEST_IN_LANES and planar and self.goal.contracts and takes_lanes(self.law)
 
     def _close_in_lanes(self, speeds: Floats, periods: float) -> tuple[Curve, float]:

@@ -39,14 +39,12 @@ from frictionlab.methods.periodic.period_map import (
     start_of,
     unit_of_scalars,
     unpack,
-    whole_size_of,
 )
 from frictionlab.methods.periodic.steady_sliding import ends_sliding, write_sliding
 from frictionlab.motion.equation import bare, belt_advance, changed, fastest_slip, span
 from frictionlab.motion.linalg import dimension
 from frictionlab.motion.maps.case import Pace, Stepping, case_of, keeping, noting, pace_of, repeating
 from frictionlab.motion.orbit.recorder import Track, track_of
-from frictionlab.motion.relaxing import lasting
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -129,8 +127,7 @@ class Setting(NamedTuple):
 @inner
 def scales_on(body: BodyNumbers) -> Scales:
     """Over the span of the body."""
-    damping = body.damping_mean + body.damping_split + lasting(body)
-    return Scales(span(body), damping, body.normal_load)
+    return Scales(span(body), body.damping_mean + body.damping_split, body.normal_load)
 
 
 # --- the functions at addresses -------------------------------------------------------------------------------------
@@ -254,10 +251,11 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
         hidden_error, per_time = hidden_error_of(law, on.body, zero)
         scales = scales_on(_over(body, 1.0))
         remembers = _has_memory(law)
-        scalars = Scalars(2 * dimension(zero), size_of(law, zero), unit_of_scalars(law, on.body, zero))
+        size = size_of(law, zero)
+        scalars = Scalars(2 * dimension(zero), size, unit_of_scalars(law, on.body, zero))
         return room, Maps(
             written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
-            whole_size_of(law, body, zero), scalars, remembers, dimension(zero) == 2, scales, fastest_slip(on.body),
+            size, scalars, remembers, dimension(zero) == 2, scales, fastest_slip(on.body),
             of_memory if remembers else of_sliding,
             coarsest_of(law, on.body), hidden_error, per_time,
         )  # fmt: skip
@@ -274,8 +272,8 @@ maps_of, maps_by_path = (
 
 def table_of_maps(law: FrictionLaw, body: BodyNumbers) -> MadeByKernel:
     """Return the table of the maps of a law on a body, for other kernels to call."""
-    pathless = isinstance(body.reference_sine, complex) or bool(body.relaxing)
-    by_path = map_kind(law, pathless) == "exact path" and not getattr(body.varying, "keeps_stiffness", ())
+    planar = isinstance(body.reference_sine, complex)
+    by_path = map_kind(law, planar) == "exact path" and not getattr(body.varying, "keeps_stiffness", ())
     return MadeByKernel(maps_by_path if by_path else maps_of, law, body)
 
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law, by_relaxing
-from frictionlab.methods.periodic.period_map import deviate_evenly, size_of_deviation, start_of, unpack
+from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.methods.periodic.period_map import size_of_deviation, start_of, unpack
 from frictionlab.motion.equation import equilibrium, fastest_slip, free_state
 from frictionlab.motion.linalg import norm, subtract
 from frictionlab.motion.maps.case import Case
@@ -55,7 +55,6 @@ def write_sliding(case: Case, state: Any) -> float:
     friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
     x, v, z = state_of_sliding(body, friction, zero)
     start_of(law, body, state, x, v, z - memory_of_sliding(law, belt_speed))
-    deviate_evenly(body, state)
     return friction
 
 
@@ -94,10 +93,7 @@ def _creep_on_the_line(case: Case, state: Any, zero: float) -> float:
     return left + _impulse_response(body) * body.normal_load * slope * abs(rate)
 
 
-_creep_of_body = by_relaxing(_creep_on_the_line, lambda case, state, zero: math.inf)
-_creep = by_dimension(
-    lambda case, state, zero: _creep_of_body(case, state, zero), lambda case, state, zero: math.inf
-)
+_creep = by_dimension(_creep_on_the_line, lambda case, state, zero: math.inf)
 """A bound on the speed of the deviation from the vibration, from now on; none for bristles that are damped."""
 
 

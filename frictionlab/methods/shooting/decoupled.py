@@ -63,11 +63,11 @@ class Across:
 def axes_apart(scene: Scene, law: FrictionLaw) -> bool:
     """Check whether both axes move and can be solved apart.
 
-    This requires two degrees of freedom, sine loads, ``per-axis`` friction, no body that remembers, and
-    motion across the belt that does not die out.
+    This requires two degrees of freedom, sine loads, ``per-axis`` friction, and motion across the belt that
+    does not die out.
     """
     couples = law.planar_form() != "per-axis" or scene.degrees_of_freedom != 2 or not scene.is_harmonic
-    return not couples and not scene.remembers and not along_the_belt(scene, law)
+    return not couples and not along_the_belt(scene, law)
 
 
 def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

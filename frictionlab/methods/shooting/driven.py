@@ -59,7 +59,6 @@ from frictionlab.theory.rest import (
     resting_range,
     stays_at_rest,
 )
-from frictionlab.theory.springs import BEST, COARSE, is_exact
 from frictionlab.values.quantities import Floats
 
 Complexes = NDArray[np.complex128]
@@ -79,12 +78,6 @@ NO_DERIVATIVE = (
 )
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
-MISFIT = (
-    "error {:.1e} above the tolerance {:.1e}: what remembers is a sum of springs, and this is what they miss"
-)
-NO_MISFIT = (
-    "what remembers is a sum of springs, and of a coarser sum, which tells what they miss, no mean was found"
-)
 CARRIED = "friction holds the mass, and the belt carries it for some {:.0e} drive periods from slip to slip"
 BY_ROUNDING = (
     "next to rest two motions hardly approach each other in a period, and rounding alone leaves this error"
@@ -97,31 +90,7 @@ MAY_REST = (
 
 def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer driven scenes that differ in belt speed alone, by continuation."""
-    found = _solved(scenes, law, tolerance, BEST)
-    if not scenes[0].remembers or is_exact(scenes[0]):
-        return found
-    return _with_misfit(found, [_solved(scenes, law, tolerance, which) for which in COARSE], tolerance)
-
-
-def _with_misfit(found: Answers, others: Sequence[Answers], tolerance: float) -> Answers:
-    """Answers for a sum of springs in the place of what remembers, their error also that to coarser sums."""
-    apart = np.sum([np.abs(found.mean.real - other.mean.real) for other in others], axis=0)
-    error, status, reason = found.error + apart, list(found.status), list(found.reason)
-    model = [f"{each}; {ModelWord.SPRINGS}" if each else "" for each in found.model]
-    kind, mean = list(found.error_kind), found.mean.copy()
-    for i in range(len(status)):
-        if status[i] == "ok" and not np.isfinite(apart[i]):
-            status[i], model[i], kind[i], mean[i], error[i] = "failed", "", "", UNKNOWN, math.nan
-            reason[i] = NO_MISFIT
-        elif status[i] == "ok" and error[i] > tolerance >= found.error[i]:
-            told = MISFIT.format(error[i], tolerance)
-            reason[i] = f"{reason[i]}; {told}" if reason[i] else told
-    return replace(found, status=status, reason=reason, model=model, error_kind=kind, mean=mean, error=error)
-
-
-def _solved(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, which: int) -> Answers:
-    """which: of the sums of springs in the place of what of the body remembers."""
-    states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance, which))
+    states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance))
     at_rest = np.flatnonzero(belt_speeds_of(scenes) == 0.0).tolist()
     resting = [i for i in at_rest if stays_at_rest(scenes[i], law)]
     moving = [i for i in range(len(scenes)) if i not in resting]

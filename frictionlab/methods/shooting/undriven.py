@@ -132,7 +132,7 @@ class Undriven:
     def _conserves(self) -> bool:
         """Whether only friction other than that of sliding takes energy."""
         mass = self._path.mass
-        elastic = mass.damping == 0.0 and not mass.bends and not mass.relaxing
+        elastic = mass.damping == 0.0 and not mass.bends
         return elastic and self.law.constant_sliding_friction()
 
     def motion(self) -> PeriodicMotion:
@@ -261,7 +261,7 @@ class Undriven:
         self._check_across(float(np.abs(span.track.v.real[: span.track.filled[0]] - speed).max()))
         kind = ModelWord.STICKS if span.slowest < STICKING * abs(speed) else ModelWord.SLIPS
         # at rest nothing is left of the motion before
-        forgets = span.stuck > 0.0 and self.law.count() == 0 and not self.scene.remembers
+        forgets = span.stuck > 0.0 and self.law.count() == 0
         multiplier = 0.0 if forgets else cycle.multiplier
         return PeriodicMotion(cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, multiplier, kind)
 

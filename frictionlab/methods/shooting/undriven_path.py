@@ -21,7 +21,7 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, stated_error
-from frictionlab.methods.periodic.period_map import start_of, unit_of_scalars, whole_size_of
+from frictionlab.methods.periodic.period_map import size_of, start_of, unit_of_scalars
 from frictionlab.methods.periodic.problem import largest_modulus
 from frictionlab.methods.periodic.setting import Maps, Setting, maps_of, recorded_map
 from frictionlab.motion.equation import (
@@ -39,7 +39,6 @@ from frictionlab.scene.body import BodyNumbers, Mass, on_the_line
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.sliding_stability import loses_energy, steady_deflection
-from frictionlab.theory.springs import mass_of
 from frictionlab.values.quantities import Floats
 
 TURN = 2.0 * math.pi
@@ -121,7 +120,7 @@ class UndrivenPath:
     @cached_property
     def mass(self) -> Mass:
         """The numbers of the scene."""
-        return mass_of(self.scene)
+        return self.scene.mass()
 
     @cached_property
     def speed(self) -> float:
@@ -145,7 +144,7 @@ class UndrivenPath:
     @cached_property
     def size(self) -> int:
         """Of a state."""
-        return int(interpreted(whole_size_of)(self.law, self._body, 0.0))
+        return int(interpreted(size_of)(self.law, 0.0))
 
     # --- states ---
 
@@ -226,7 +225,7 @@ class UndrivenPath:
 
     def loses_energy(self, state: Floats) -> bool:
         """Check that every motion with no more energy than this one loses it, down to steady sliding."""
-        linear = self.law.count() == 0 and not self.mass.bends and not self.scene.remembers
+        linear = self.law.count() == 0 and not self.mass.bends
         return linear and loses_energy(self.mass, self.law, self.speed, self.from_sliding(state))
 
     # --- the motion ---

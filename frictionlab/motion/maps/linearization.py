@@ -56,7 +56,6 @@ from frictionlab.motion.maps.rates import (
     springs_at,
     stretching,
 )
-from frictionlab.motion.relaxing import elements_of, relaxing_rate
 from frictionlab.scene.body import BodyNumbers
 
 NUDGE = 1e-5
@@ -298,9 +297,6 @@ def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) ->
     work.slope[U] = load + jerk + restoring_force(springs_at(flow, work), 0.0 * turn, turn)
     for k in range(count_of(flow.law)):
         work.slope[MEMORY + k] = 0.0 * zero
-    first = MEMORY + count_of(flow.law)
-    for k in range(elements_of(body)):
-        work.slope[first + k] = relaxing_rate(body, k, 0.0, -turn) + 0.0 * zero
 
 
 _slope = by_scalars(_slope_of_deviation, _slope_of_slip)

@@ -414,4 +414,4 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, stepping: Stepping) -> Ma
         last = k == pieces_of(body) - 1
         after = _share_at(case, 0, 0.0) if last else _share_at(case, k + 1, end)
         _over_jump(work, law, _share_at(case, k, end), after)
-    return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps, 0.0)
+    return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps)

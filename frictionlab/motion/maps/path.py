@@ -34,7 +34,6 @@ from frictionlab.motion.orbit.recorder import panel_writer
 from frictionlab.motion.steppers.dop853 import (
     Dense,
     State,
-    carrying_nothing,
     interpolant,
     motion_within,
     stepper,
@@ -110,8 +109,7 @@ def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
 
 
-_rates = carrying_nothing(path_rates)
-step, dense = stepper(_rates), interpolant(_rates)
+step, dense = stepper(path_rates), interpolant(path_rates)
 
 
 @fast
@@ -225,9 +223,7 @@ class PathNode(NamedTuple):
 def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
     """Return the node at the start of a leg."""
     a, rub = path_rates(leg, tau, y, u)
-    return PathNode(
-        leg, tau, State(y, u, a, rub, 0.0, 0.0), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True
-    )
+    return PathNode(leg, tau, State(y, u, a, rub), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True)
 
 
 @inner
@@ -293,7 +289,7 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
         return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)
     leg = _anchored(leg, tau)
     a, rub = path_rates(leg, tau, taken.x, taken.v)
-    return PathNode(leg, tau, State(taken.x, taken.v, a, rub, 0.0, 0.0), path, node.corner, False)
+    return PathNode(leg, tau, State(taken.x, taken.v, a, rub), path, node.corner, False)
 
 
 @inner

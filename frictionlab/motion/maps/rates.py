@@ -33,7 +33,6 @@ from frictionlab.motion.equation import (
     slopes_at,
     unbalanced_load,
 )
-from frictionlab.motion.relaxing import along_x1, elements_of, relaxing_force, relaxing_rate
 from frictionlab.scene.body import BodyNumbers
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
@@ -48,8 +47,7 @@ gives way before it."""
 class Work(NamedTuple):
     """Arrays for one step of a state.
 
-    A state is the mass (Y, U, IMPULSE), from MEMORY on the n numbers of the memory, and last the forces of
-    relaxing springs.
+    A state is the mass (Y, U, IMPULSE), and from MEMORY on the n numbers of the memory.
     """
 
     start: Any  # where the step starts
@@ -92,16 +90,16 @@ contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
 def workspace(law: Any, zero: Any, contact: Any) -> Work:
     """Return zeroed arrays on the caller's stack, which live as long as the caller.
 
-    contact: ``contact_kind`` of the body. There is room for eight springs that relax.
+    contact: ``contact_kind`` of the body.
     """
     return Work(
-        start=room(law, 1, 11, zero),
-        end=room(law, 1, 11, zero),
-        stage=room(law, 1, 11, zero),
-        rates=room(law, 1, 11, zero),
-        slope=room(law, 1, 11, zero),
-        increments=room(law, 8, 88, zero),
-        bends=room(law, 3, 33, zero),
+        start=room(law, 1, 3, zero),
+        end=room(law, 1, 3, zero),
+        stage=room(law, 1, 3, zero),
+        rates=room(law, 1, 3, zero),
+        slope=room(law, 1, 3, zero),
+        increments=room(law, 8, 24, zero),
+        bends=room(law, 3, 9, zero),
         memory=room(law, 1, 0, kind_of_memory(law, zero)),
         moving=room(law, 1, 0, kind_of_memory(law, zero)),
         jacobian=room(law, 6, 2, zero),
@@ -150,7 +148,7 @@ rate_held = by_scalars(lambda flow, now, a: a, lambda flow, now, a: deviation_sl
 @fast
 def rows_of(flow: Flow) -> int:
     """Return the number of numbers in a state."""
-    return MEMORY + count_of(flow.law) + elements_of(flow.body)
+    return MEMORY + count_of(flow.law)
 
 
 @fast
@@ -273,9 +271,6 @@ def fill_rates(flow: Flow, now: Instant, work: Work, zero: Any) -> Any:
     # friction first: it may depend on the rates of what is remembered
     friction = friction_in_mode(flow.law, work, w)
     a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
-    a = a - along_x1(relaxing_force(body, work.stage, MEMORY + n), zero)
-    for k in range(elements_of(body)):
-        work.rates[MEMORY + n + k] = relaxing_rate(body, k, work.stage[MEMORY + n + k], u) + 0.0 * zero
     work.rates[Y], work.rates[U] = u, rate_held(flow, now, a)
     work.rates[IMPULSE] = load_share(body, now) * friction
     for k in range(n):

@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import fast, fast_embedded, inner
-from frictionlab.compile.dispatch import by_dimension, by_relaxing, length
-from frictionlab.compile.lane_arrays import select, summed
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.compile.lane_arrays import select
 from frictionlab.motion.equation import (
     Flow,
     anchored,
@@ -40,18 +40,9 @@ from frictionlab.motion.events import dips, slip_events
 from frictionlab.motion.maps.case import Case, case_in_piece
 from frictionlab.motion.maps.stick import StickPhase, stick_phase
 from frictionlab.motion.orbit.recorder import Track, panel_writer
-from frictionlab.motion.relaxing import (
-    along_x1,
-    at_rest_until,
-    carrying,
-    deviating_force,
-    in_one_number,
-    stable_step,
-)
 from frictionlab.motion.steppers.dop853 import (
     Dense,
     State,
-    carrying_nothing,
     interpolant,
     motion_within,
     stepper,
@@ -69,70 +60,25 @@ class Mapped(NamedTuple):
     closest: float  # smallest slip speed at a node
     released: float  # when rest ended last; -1: never
     steps: int  # -1: gave up
-    forces: Any  # relaxing forces of the deviation, as one number
 
 
 MOST_STEPS = 200_000
 
 
-@fast_embedded
-def _remembering_rates(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> Any:
-    """Return ``rates`` of a body with relaxing springs, and the rates of their forces."""
-    a, rub = rates(problem, tau, y, u)
-    relaxing = problem.body.relaxing
-    return a - along_x1(summed(force), u), rub, relaxing.stiffness * u.real - relaxing.rate * force
-
-
-_plain_rates = carrying_nothing(rates)
-_step, _dense = stepper(_plain_rates), interpolant(_plain_rates)
-_remembering_step, _remembering_dense = stepper(_remembering_rates), interpolant(_remembering_rates)
-step, dense = (
-    by_relaxing(
-        lambda problem, tau, state, h: _step(problem, tau, state, h),
-        lambda problem, tau, state, h: _remembering_step(problem, tau, state, h),
-    ),
-    by_relaxing(
-        lambda problem, tau, state, h: _dense(problem, tau, state, h),
-        lambda problem, tau, state, h: _remembering_dense(problem, tau, state, h),
-    ),
-)
-_rates_with = by_relaxing(
-    lambda problem, tau, y, u, force: _plain_rates(problem, tau, y, u, force),
-    lambda problem, tau, y, u, force: _remembering_rates(problem, tau, y, u, force),
-)
-
-
-@inner
-def _state_with(problem: Flow, tau: float, y: Any, u: Any, force: Any) -> State:
-    a, f, r = _rates_with(problem, tau, y, u, force)
-    return State(y, u, a, f, force, r)
+step, dense = stepper(rates), interpolant(rates)
 
 
 @inner
 def state_at(problem: Flow, tau: float, y: Any, u: Any) -> State:
-    """Return the state from which slip goes on; the body knows its relaxing forces."""
-    return _state_with(problem, tau, y, u, deviating_force(problem.body, tau))
+    """Return the state from which slip goes on."""
+    a, f = rates(problem, tau, y, u)
+    return State(y, u, a, f)
 
 
 @inner
-def state_after(problem: Flow, tau: float, taken: Any) -> State:
-    """Return the state at the end of a step."""
-    return _state_with(problem, tau, taken.x, taken.v, taken.e)
-
-
-@inner
-def _still(y: Any, u: Any, force: Any) -> State:
+def _still(y: Any, u: Any) -> State:
     """Return a state at rest, whose rates are not used."""
-    return State(y, u, u, u, force, force)
-
-
-_growing = by_relaxing(
-    lambda problem, start, lasts, moved: 0.0,
-    lambda problem, start, lasts, moved: (
-        start.e + problem.body.relaxing.stiffness * moved - (lasts * problem.body.relaxing.rate) * start.e
-    ),
-)
-"""_growing(problem, start, lasts, moved): relaxing forces after a time so short that they grow evenly."""
+    return State(y, u, u, u)
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------
@@ -166,7 +112,7 @@ REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
 
 @fast
 def _acceleration_after(problem: Flow, tau: float, end: Any) -> Any:
-    return state_after(problem, tau, end).a
+    return state_at(problem, tau, end.x, end.v).a
 
 
 stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
@@ -210,12 +156,7 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
             path = 0.5 * wait * w
             friction_impulse = w / body.normal_load + resting_friction(body, belt_speed, node.tau, end, x)
             y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
-            return Landing(
-                REST,
-                wait,
-                _still(y, w, _growing(problem, node.state, wait, (y - node.state.x).real)),
-                friction_impulse,
-            )
+            return Landing(REST, wait, _still(y, w), friction_impulse)
     return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
 
 
@@ -229,17 +170,17 @@ def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: 
     side, state, limit = problem.side, node.state, h
     after = side * slip_at(problem, node.tau + h, taken.v)
     if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
-        return Landing(STILL, h, state_after(problem, node.tau + h, taken), taken.friction_impulse)
+        return Landing(STILL, h, state_at(problem, node.tau + h, taken.x, taken.v), taken.friction_impulse)
     if after <= 0.0 and leaving:
         return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
-    there = state_after(problem, node.tau + h, taken)
+    there = state_at(problem, node.tau + h, taken.x, taken.v)
     rises = side * slip_rate(problem, node.tau + h, there.a) > 0.0
     if after > 0.0 and not leaving and side * node.rate < 0.0 and rises:
         limit = lowest(problem, node.tau, state, side * node.rate, h)
         after = side * slip_at(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
     if after <= 0.0:
         h, taken = stop(problem, node.tau, state, 0.0, limit)
-        return Landing(REST, h, _still(taken.x, taken.v, taken.e), taken.friction_impulse)
+        return Landing(REST, h, _still(taken.x, taken.v), taken.friction_impulse)
     return Landing(ACCEPT, h, there, taken.friction_impulse)
 
 
@@ -248,7 +189,7 @@ def _after_in_the_plane(
 ) -> Landing:
     """Decide whether slip came close to rest between the nodes: then the step was too long."""
     after = slip_at(problem, node.tau + h, taken.v)
-    there = state_after(problem, node.tau + h, taken)
+    there = state_at(problem, node.tau + h, taken.x, taken.v)
     if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, there.a), h):
         return Landing(REPEAT, 0.5 * h, node.state, y)
     return Landing(ACCEPT, h, there, taken.friction_impulse)
@@ -348,7 +289,7 @@ def _after_rest(problem: Flow, state: State, rest: StickPhase, end: float) -> St
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
     u = u - reference_velocity(body, problem.sine, problem.cosine)
     y = rest.x - reference_position(body, tau)
-    return state_at(problem, tau, y, u) if tau < end else _still(y, u, deviating_force(problem.body, tau))
+    return state_at(problem, tau, y, u) if tau < end else _still(y, u)
 
 
 class Attempt(NamedTuple):
@@ -385,13 +326,12 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
 
 
 @inner
-def sliding_map(case: Case, y: Any, u: Any, forces: Any, accuracy: float, track: Track) -> Mapped:
+def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Mapped:
     """Map one span from the deviation (y, u) at tau = 0.
 
-    forces: relaxing forces of the deviation; nothing for a body without. accuracy: of each step, in the norm
-    of energy. A track with room records every piece of the motion.
+    accuracy: of each step, in the norm of energy. A track with room records every piece of the motion.
     """
-    image = Mapped(y, u, 0.0 * y, 0.0, 1e300, -1.0, 0, forces)
+    image = Mapped(y, u, 0.0 * y, 0.0, 1e300, -1.0, 0)
     for k in range(pieces_of(case.body)):
         tau, end = piece_ends(case.body, k)
         image = _sliding_piece(case_in_piece(case, k), tau, end, image, accuracy, track)
@@ -408,16 +348,15 @@ def _sliding_piece(
 
     image: state at the first corner, with sums and extremes so far.
     """
-    law, belt_speed, zero = case.law, case.belt_speed, case.zero
-    y, u, friction_impulse, stuck, closest, released, steps, forces = image
-    body = carrying(in_one_number(case.body), forces, tau)
+    law, body, belt_speed, zero = case
+    y, u, friction_impulse, stuck, closest, released, steps = image
     # the side of the first slip; a slip within the accuracy of zero is rest
-    longest = min(longest_step(body, law.sliding_friction(0.0), accuracy), stable_step(body))
+    longest = longest_step(body, law.sliding_friction(0.0), accuracy)
     h = 0.1 * longest
     w = slip_at(anchored(law, body, belt_speed, 1.0, tau), tau, u)
     problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, tau)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
-    state = _still(y, u, deviating_force(problem.body, tau)) if resting else state_at(problem, tau, y, u)
+    state = _still(y, u) if resting else state_at(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
             # at rest: until the belt has carried the mass to where friction no longer holds it
@@ -430,7 +369,6 @@ def _sliding_piece(
                 released = tau + rest.stuck
             tau, resting, leaving, closest, h = rest.tau, False, True, 0.0, 0.1 * longest
             steps += 1  # a rest of no length takes no step and no time, but counts
-            body = at_rest_until(body, belt_speed, tau)
             problem = anchored(law, body, belt_speed, rest.side, tau)
             state = _after_rest(problem, state, rest, end)
             continue
@@ -447,6 +385,4 @@ def _sliding_piece(
             resting, leaving = done.verdict == REST, done.verdict == STILL
             friction_impulse, state = friction_impulse + done.friction_impulse, done.end
             tau = tau + done.h if end - tau > done.h else end
-            body = carrying(body, state.e, tau)
-    forces = state.e
-    return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, steps, forces)
+    return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, steps)

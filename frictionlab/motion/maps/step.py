@@ -17,7 +17,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_dimension, by_relaxing, by_scalars, length
+from frictionlab.compile.dispatch import by_dimension, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.motion.equation import Flow, instant_near, load_share, restoring_force
 from frictionlab.motion.linalg import add, apply, block, diagonal, inverse, keep, product, scale
@@ -40,7 +40,6 @@ from frictionlab.motion.maps.rates import (
     rows_of,
     springs_at,
 )
-from frictionlab.motion.relaxing import along_x1, elements_of, energy_unit, relaxing_force
 from frictionlab.motion.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import BodyNumbers
 
@@ -49,23 +48,6 @@ LITTLE = 1e-2
 SIMULTANEOUS = 6
 """Index of the first stage that reuses the sine and cosine of the stage before: both are at the end of the
 step."""
-
-
-@fast
-def _alone(body: BodyNumbers, k: int, h: float) -> float:
-    """Return the factor from the right-hand side of one relaxing force to its increment in a stage."""
-    return 1.0 / (1.0 / (GAMMA * h) + body.relaxing.rate[k])
-
-
-def _yielded_by_springs(body: BodyNumbers, h: float) -> float:
-    total = 0.0
-    for k in range(elements_of(body)):
-        total += _alone(body, k, h) * body.relaxing.stiffness[k]
-    return total
-
-
-_yielded = by_relaxing(lambda body, h: 0.0, _yielded_by_springs)
-"""_yielded(body, h): growth of the relaxing forces with the velocity along x1, within a stage."""
 
 
 @fast
@@ -86,9 +68,8 @@ def factor(flow: Flow, h: float, work: Work, zero: Any) -> None:
         keep(work.factors, 2 * k, alone, zero)
         keep(work.factors, 2 * k + 1, moved, zero)
     # the mass, with its springs at the end of the step: y' = u makes them gamma h K in the block of u
-    half = 0.5 * _yielded(body, h)
-    mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean + half
-    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split + half, zero)
+    mean = diagonally + beside.damping_mean + GAMMA * h * beside.stiffness_mean
+    mass = diagonal(mean, beside.damping_split + GAMMA * h * beside.stiffness_split, zero)
     keep(
         work.factors,
         2 * n,
@@ -131,31 +112,6 @@ def _right_side(i: int, flow: Flow, h: float, work: Work) -> None:
             work.rates[row] = work.rates[row] + share * work.increments[size * j + row]
 
 
-def _relaxed_springs(flow: Flow, i: int, h: float, work: Work) -> float:
-    first, total = rows_of(flow) * (i + 1) - elements_of(flow.body), 0.0
-    for k in range(elements_of(flow.body)):
-        alone = _alone(flow.body, k, h) * work.rates[rows_of(flow) - elements_of(flow.body) + k]
-        work.increments[first + k] = alone
-        total += alone.real
-    return total
-
-
-_relaxed = by_relaxing(lambda flow, i, h, work: 0.0, _relaxed_springs)
-"""_relaxed(flow, i, h, work): sum of the relaxing forces at unchanged velocity; they are left in the
-increments of stage i."""
-
-
-def _stretched_springs(flow: Flow, i: int, h: float, u: Any, work: Work) -> None:
-    first = rows_of(flow) * (i + 1) - elements_of(flow.body)
-    for k in range(elements_of(flow.body)):
-        stretched = _alone(flow.body, k, h) * flow.body.relaxing.stiffness[k] * u.real
-        work.increments[first + k] = work.increments[first + k] + stretched
-
-
-_stretch = by_relaxing(lambda flow, i, h, u, work: None, _stretched_springs)
-"""_stretch(flow, i, h, u, work): add the effect of the change u of velocity on the relaxing forces."""
-
-
 @fast
 def _solve(i: int, flow: Flow, h: float, work: Work, zero: Any) -> None:
     """Solve for the increments of stage i, from its right-hand sides in ``work.rates``."""
@@ -169,7 +125,6 @@ def _solve(i: int, flow: Flow, h: float, work: Work, zero: Any) -> None:
         alone = alone + apply(block(work.jacobian, 3 * k + 2, zero), moved)
     right = (
         work.rates[U]
-        - along_x1(_relaxed(flow, i, h, work), zero)
         - GAMMA * h * _stretched(springs_at(flow, work), work.rates[Y])
         - load_on(body, instant_near(flow, flow.anchor)) * alone
     )
@@ -179,10 +134,8 @@ def _solve(i: int, flow: Flow, h: float, work: Work, zero: Any) -> None:
     for k in range(n):
         moved = apply(block(work.factors, 2 * k + 1, zero), u)
         work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
-    _stretch(flow, i, h, u, work)
     if creeps(flow.law, work):
         held = restoring_force(springs_at(flow, work), work.increments[first + Y], u)
-        held = held + along_x1(relaxing_force(body, work.increments, first + MEMORY + n), zero)
         rubs = -held / body.normal_load
     else:
         share = load_share(body, instant_near(flow, flow.anchor))
@@ -231,7 +184,7 @@ _unit = by_scalars(lambda flow, k, work, zero: work.unit[k], _unit_of_impulse)
 @inner
 def _error(flow: Flow, work: Work, zero: Any) -> float:
     """Return the difference to the embedded method of order 4 in the norm of energy, impulse included."""
-    n, body, m = count_of(flow.law), flow.body, elements_of(flow.body)
+    n, body = count_of(flow.law), flow.body
     last = rows_of(flow) * (STAGES - 1)
     error = _elastic(body, work.increments[last + Y])
     velocity = velocity_error(flow.law, work, work.increments[last + U])
@@ -239,8 +192,6 @@ def _error(flow: Flow, work: Work, zero: Any) -> float:
     error += square(body.normal_load * work.increments[last + IMPULSE])
     for k in range(n):
         error += square(_unit(flow, k, work, zero) * work.increments[last + MEMORY + k])
-    for k in range(m):
-        error += square(energy_unit(body, k) * work.increments[last + MEMORY + n + k])
     return math.sqrt(error)
 
 

@@ -30,7 +30,6 @@ from frictionlab.motion.equation import (
     span,
 )
 from frictionlab.motion.maps.case import Case
-from frictionlab.motion.relaxing import at_rest_until
 from frictionlab.scene.body import BodyNumbers
 
 
@@ -43,7 +42,6 @@ def _stick_end(law: Any, body: BodyNumbers, belt_speed: float, tau: float, x: An
     holds = law.static_friction()
     swell, longest, start = holds * normal_load_curvature(body), look_ahead(body), tau
     for _ in range(10_000):
-        body = at_rest_until(body, belt_speed, tau)
         now, there = instant_at(body, tau), x + belt_path(body, belt_speed, start, tau)
         held, rate, _bend = holding_force(body, belt_speed, now, there)
         curvature = holding_curvature(body, belt_speed, there) + swell

@@ -298,17 +298,12 @@ def _dense7(k: Any, extra: Any) -> Any:
 
 
 class State(NamedTuple):
-    """Position, velocity, acceleration and friction coefficient at one time.
-
-    e: other numbers that are integrated along with the motion; r: their rates; zero where there are none.
-    """
+    """Position, velocity, acceleration and friction coefficient at one time."""
 
     x: Any
     v: Any
     a: Any
     f: Any
-    e: Any
-    r: Any
 
 
 class Step(NamedTuple):
@@ -321,11 +316,10 @@ class Step(NamedTuple):
     v_error5: Any
     v_error3: Any
     friction_impulse: Any
-    e: Any
 
 
 class Stages(NamedTuple):
-    """Velocities, accelerations, friction coefficients and other rates of the stages 1 and 6 to 12.
+    """Velocities, accelerations and friction coefficients of the stages 1 and 6 to 12.
 
     A step ends at a weighted sum of these.
     """
@@ -333,7 +327,6 @@ class Stages(NamedTuple):
     v: Any
     a: Any
     f: Any
-    r: Any
 
 
 class Dense(NamedTuple):
@@ -342,17 +335,6 @@ class Dense(NamedTuple):
     h: float
     x: Any
     v: Any
-
-
-def carrying_nothing(rates: Any) -> Any:
-    """Return rates for ``stepper`` from a kernel function ``rates(problem, tau, x, v)`` = (x'', friction)."""
-
-    @fast_embedded
-    def carrying(problem: Any, tau: float, x: Any, v: Any, _e: Any) -> Any:
-        a, f = rates(problem, tau, x, v)
-        return a, f, 0.0
-
-    return carrying
 
 
 @cache
@@ -364,90 +346,51 @@ def _stages_of(rates: Any) -> Any:
 
     @fast_embedded
     def stages(problem: Any, tau: float, state: State, h: float) -> Stages:
-        x, v0, a0, f0, e0, r0 = state
+        x, v0, a0, f0 = state
         v1 = v0 + h * _sum1(a0)
-        a1, _f1, r1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1, e0 + h * _sum1(r0))
+        a1, _f1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1)
         v2 = v0 + h * _sum2(a0, a1)
-        a2, _f2, r2 = rates(
-            problem, tau + 0.0789002279381516 * h, x + h * _sum2(v0, v1), v2, e0 + h * _sum2(r0, r1)
-        )
+        a2, _f2 = rates(problem, tau + 0.0789002279381516 * h, x + h * _sum2(v0, v1), v2)
         v3 = v0 + h * _sum3(a0, a2)
-        a3, _f3, r3 = rates(
-            problem, tau + 0.1183503419072274 * h, x + h * _sum3(v0, v2), v3, e0 + h * _sum3(r0, r2)
-        )
+        a3, _f3 = rates(problem, tau + 0.1183503419072274 * h, x + h * _sum3(v0, v2), v3)
         v4 = v0 + h * _sum4(a0, a2, a3)
-        a4, _f4, r4 = rates(
-            problem, tau + 0.2816496580927726 * h, x + h * _sum4(v0, v2, v3), v4, e0 + h * _sum4(r0, r2, r3)
-        )
+        a4, _f4 = rates(problem, tau + 0.2816496580927726 * h, x + h * _sum4(v0, v2, v3), v4)
         v5 = v0 + h * _sum5(a0, a3, a4)
-        a5, f5, r5 = rates(
-            problem, tau + 0.3333333333333333 * h, x + h * _sum5(v0, v3, v4), v5, e0 + h * _sum5(r0, r3, r4)
-        )
+        a5, f5 = rates(problem, tau + 0.3333333333333333 * h, x + h * _sum5(v0, v3, v4), v5)
         v6 = v0 + h * _sum6(a0, a3, a4, a5)
-        a6, f6, r6 = rates(
-            problem, tau + 0.25 * h, x + h * _sum6(v0, v3, v4, v5), v6, e0 + h * _sum6(r0, r3, r4, r5)
-        )
+        a6, f6 = rates(problem, tau + 0.25 * h, x + h * _sum6(v0, v3, v4, v5), v6)
         v7 = v0 + h * _sum7(a0, a3, a4, a5, a6)
-        a7, f7, r7 = rates(
-            problem,
-            tau + 0.3076923076923077 * h,
-            x + h * _sum7(v0, v3, v4, v5, v6),
-            v7,
-            e0 + h * _sum7(r0, r3, r4, r5, r6),
-        )
+        a7, f7 = rates(problem, tau + 0.3076923076923077 * h, x + h * _sum7(v0, v3, v4, v5, v6), v7)
         v8 = v0 + h * _sum8(a0, a3, a4, a5, a6, a7)
-        a8, f8, r8 = rates(
-            problem,
-            tau + 0.6512820512820513 * h,
-            x + h * _sum8(v0, v3, v4, v5, v6, v7),
-            v8,
-            e0 + h * _sum8(r0, r3, r4, r5, r6, r7),
-        )
+        a8, f8 = rates(problem, tau + 0.6512820512820513 * h, x + h * _sum8(v0, v3, v4, v5, v6, v7), v8)
         v9 = v0 + h * _sum9(a0, a3, a4, a5, a6, a7, a8)
-        a9, f9, r9 = rates(
-            problem,
-            tau + 0.6 * h,
-            x + h * _sum9(v0, v3, v4, v5, v6, v7, v8),
-            v9,
-            e0 + h * _sum9(r0, r3, r4, r5, r6, r7, r8),
-        )
+        a9, f9 = rates(problem, tau + 0.6 * h, x + h * _sum9(v0, v3, v4, v5, v6, v7, v8), v9)
         v10 = v0 + h * _sum10(a0, a3, a4, a5, a6, a7, a8, a9)
-        a10, f10, r10 = rates(
-            problem,
-            tau + 0.8571428571428571 * h,
-            x + h * _sum10(v0, v3, v4, v5, v6, v7, v8, v9),
-            v10,
-            e0 + h * _sum10(r0, r3, r4, r5, r6, r7, r8, r9),
+        a10, f10 = rates(
+            problem, tau + 0.8571428571428571 * h, x + h * _sum10(v0, v3, v4, v5, v6, v7, v8, v9), v10
         )
         v11 = v0 + h * _sum11(a0, a3, a4, a5, a6, a7, a8, a9, a10)
-        a11, f11, r11 = rates(
-            problem,
-            tau + h,
-            x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10),
-            v11,
-            e0 + h * _sum11(r0, r3, r4, r5, r6, r7, r8, r9, r10),
-        )
+        a11, f11 = rates(problem, tau + h, x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10), v11)
         return Stages(
             (v0, v5, v6, v7, v8, v9, v10, v11),
             (a0, a5, a6, a7, a8, a9, a10, a11),
             (f0, f5, f6, f7, f8, f9, f10, f11),
-            (r0, r5, r6, r7, r8, r9, r10, r11),
         )
 
     return stages
 
 
 def stepper(rates: Any) -> Any:
-    """Return ``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v, e)``.
+    """Return ``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v)``.
 
-    The rates return (x'', friction, e'). They are bound here because numba caches no kernel that is handed a
+    The rates return (x'', friction). They are bound here because numba caches no kernel that is handed a
     function.
     """
     stages = _stages_of(rates)
 
     @fast
     def step(problem: Any, tau: float, state: State, h: float) -> Step:
-        v, a, f, r = stages(problem, tau, state, h)
+        v, a, f = stages(problem, tau, state, h)
         return Step(
             state.x + h * _sum12(*v),
             state.v + h * _sum12(*a),
@@ -456,7 +399,6 @@ def stepper(rates: Any) -> Any:
             h * _error5(*a),
             h * _error3(*a),
             h * _sum12(*f),
-            state.e + h * _sum12(*r),
         )
 
     return step
@@ -487,31 +429,21 @@ def interpolant(rates: Any) -> Any:
 
     @fast
     def dense(problem: Any, tau: float, state: State, h: float) -> Dense:
-        v, a, _f, r = stages(problem, tau, state, h)
-        x, v0, a0, _f0, e0, r0 = state
+        v, a, _f = stages(problem, tau, state, h)
+        x, v0, a0, _f0 = state
         _v0, v5, v6, v7, v8, v9, v10, v11 = v
         _a0, a5, a6, a7, a8, a9, a10, a11 = a
-        _r0, r5, r6, r7, r8, r9, r10, r11 = r
         ended, v12 = x + h * _sum12(*v), v0 + h * _sum12(*a)
-        a12, _f12, r12 = rates(problem, tau + h, ended, v12, e0 + h * _sum12(*r))
+        a12, _f12 = rates(problem, tau + h, ended, v12)
         v13 = v0 + h * _sum14(a0, a6, a7, a8, a9, a10, a11, a12)
-        x13, e13 = (
-            x + h * _sum14(v0, v6, v7, v8, v9, v10, v11, v12),
-            e0 + h * _sum14(r0, r6, r7, r8, r9, r10, r11, r12),
-        )
-        a13, _f13, r13 = rates(problem, tau + 0.1 * h, x13, v13, e13)
+        x13 = x + h * _sum14(v0, v6, v7, v8, v9, v10, v11, v12)
+        a13, _f13 = rates(problem, tau + 0.1 * h, x13, v13)
         v14 = v0 + h * _sum15(a0, a5, a6, a7, a10, a11, a12, a13)
-        x14, e14 = (
-            x + h * _sum15(v0, v5, v6, v7, v10, v11, v12, v13),
-            e0 + h * _sum15(r0, r5, r6, r7, r10, r11, r12, r13),
-        )
-        a14, _f14, r14 = rates(problem, tau + 0.2 * h, x14, v14, e14)
+        x14 = x + h * _sum15(v0, v5, v6, v7, v10, v11, v12, v13)
+        a14, _f14 = rates(problem, tau + 0.2 * h, x14, v14)
         v15 = v0 + h * _sum16(a0, a5, a6, a7, a8, a12, a13, a14)
-        x15, e15 = (
-            x + h * _sum16(v0, v5, v6, v7, v8, v12, v13, v14),
-            e0 + h * _sum16(r0, r5, r6, r7, r8, r12, r13, r14),
-        )
-        a15, _f15, _r15 = rates(problem, tau + 0.7777777777777778 * h, x15, v15, e15)
+        x15 = x + h * _sum16(v0, v5, v6, v7, v8, v12, v13, v14)
+        a15, _f15 = rates(problem, tau + 0.7777777777777778 * h, x15, v15)
         return Dense(
             h,
             _coefficients(h, x, ended, v, (v12, v13, v14, v15)),

@@ -6,10 +6,9 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import embedded, fast, inner
-from frictionlab.compile.dispatch import by_relaxing, by_variation
+from frictionlab.compile.dispatch import by_variation
 from frictionlab.compile.lane_arrays import select
 from frictionlab.motion.equation import quickest_of
-from frictionlab.motion.relaxing import hardest
 from frictionlab.scene.body import BodyNumbers
 
 LOAD, NORMAL_LOAD, BELT, COLUMNS = 0, 1, 2, 3
@@ -28,16 +27,9 @@ _belt = by_variation(lambda body, velocity: velocity.real, lambda body, velocity
 
 
 @embedded
-def _driven_by(problem: Any, k: int, part: int) -> Any:
+def load_at(problem: Any, k: int, part: int) -> Any:
+    """Return the load on the mass at a node of the k-th step."""
     return problem.grid[COLUMNS * node(problem.body, k, part) + LOAD]
-
-
-load_at = by_relaxing(
-    lambda problem, k, part: _driven_by(problem, k, part),
-    lambda problem, k, part: _driven_by(problem, k, part) - problem.body.relaxing.force,
-)
-"""load_at(problem, k, part): load on the mass at a node of the k-th step. The force of relaxing springs in
-the middle of the step is subtracted."""
 
 
 @embedded
@@ -133,6 +125,6 @@ def longest_step(body: BodyNumbers, sliding: float, accuracy: float) -> float:
     With one longest step for all maps, two maps could agree because both are limited by it, and neither be
     accurate.
     """
-    stiffest = body.stiffness_mean + abs(body.stiffness_split) + hardest(body)
+    stiffest = body.stiffness_mean + abs(body.stiffness_split)
     radian = min(1.0 / quickest_of(body), 1.0 / math.sqrt(stiffest))
     return radian * min(1.0, 2.4 * (accuracy / (body.normal_load * sliding)) ** 0.125)

@@ -341,7 +341,8 @@ class Receptance(ScenePart):
 class Body(ScenePart):
     """Nonlinear and viscoelastic forces on the body along x1, added to those of its spring and its dashpot.
 
-    Nondimensional, the spring has stiffness 1 and the dashpot is given by damping_ratio.
+    Nondimensional, the spring has stiffness 1 and the dashpot is given by damping_ratio. A body with
+    relaxation, fractional or receptance is solved under Coulomb friction alone, along one line.
 
     Parameters
     ----------

@@ -14,20 +14,20 @@ LIMITS = {
     "compile": 1413,
     "curves": 841,
     "laws": 686,
-    "methods": 10760,
-    "motion": 4851,
+    "methods": 10116,
+    "motion": 4406,
     "report": 1772,
     "runner": 4301,
     "scene": 1659,
     "study": 2791,
     "testing": 1491,
-    "theory": 918,
+    "theory": 831,
     "values": 1380,
-    "tests": 29294,
+    "tests": 29095,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 348
+MOST_FILES = 343
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

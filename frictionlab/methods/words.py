@@ -86,10 +86,6 @@ class ModelWord(StrEnum):
         "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature",
     )
     LEGS = "legs", "prescribed slip along a line: deflection exact along every leg, Gauss-Lobatto quadrature"
-    COLLOCATION = (
-        "collocation",
-        "prescribed slip: deflection over one period by Radau IIA collocation, fixed point by Newton's method",
-    )
     PRESCRIBED_MEMORY = "slip and memory", "prescribed slip: memory by Rodas5P, periodic"
     MDSM_CLOSED = (
         "mdsm",

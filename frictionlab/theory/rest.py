@@ -87,14 +87,14 @@ def resting_range(scene: Scene, law: FrictionLaw, side: float = 1.0) -> float:
         return -math.inf
     force, limit = side * held.force, held.pressed * friction_at_rest(law)
     if force.imag.any():
-        return _largest_spring_force(force, limit) / held.mean
+        return largest_spring_force(force, limit) / held.mean
     pieces = np.flatnonzero(np.diff(held.k)) + 1
     upper = -max(map(highest, np.split(-force.real - limit, pieces)))
     lower = max(map(highest, np.split(force.real - limit, pieces)))
     return upper / held.mean if lower <= upper else -math.inf
 
 
-def _largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
+def largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
     """Return the largest spring force along x1 that friction balances together with the load, in the plane.
 
     Friction may reach the limit.

@@ -77,6 +77,15 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
     return law.obeys("reflection") and law.damps_across(abs(scene.belt_speed) + swing)
 
 
+def undamped(scene: Scene) -> bool:
+    """Check whether a free oscillation, along the belt or across it, has no dashpot."""
+    mass = scene.mass()
+    damps = mass.damping > 0.0 or (
+        mass.bends and (mass.bends.dashpot_1 != 0.0 or mass.bends.dashpot_2 != 0.0)
+    )
+    return not damps or (scene.transverse is not None and mass.transverse_damping == 0.0)
+
+
 def _with_free_state(scene: Scene, law: Any, body: BodyNumbers) -> BodyNumbers:
     """Return a body that several waves drive along the line, with its motion without friction.
 
@@ -143,6 +152,7 @@ class PeriodicProblem:
             self.body, self.zero = in_the_plane(for_kernels(self.mass)), 0j
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
+        self.undamped = undamped(scene)
         self.body = self.body._replace(periods=self.common)
         constant = (
             not (self.body.bends or isinstance(self.zero, complex))
@@ -156,6 +166,11 @@ class PeriodicProblem:
         self.size = interpreted(size_of)(law, self.zero)  # of a state
         self.kind = map_kind(law, isinstance(self.zero, complex))
         self._slides: dict[float, tuple[complex, complex]] = {}  # places, by the friction that shifts them
+
+    @property
+    def free_period(self) -> float:
+        """Period of the free mass, over that after which everything repeats."""
+        return self.mass.frequency / math.sqrt(self.mass.stiffness) / self.common
 
     @property
     def by_implicit_steps(self) -> Self | None:

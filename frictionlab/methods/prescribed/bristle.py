@@ -1,7 +1,4 @@
-"""Bristle laws under a prescribed slip: the periodic deflection, and the results computed from it.
-
-The closed loop of a bristle law under slip along one line: by two exact legs, or by collocation.
-"""
+"""Bristle laws with an exact path under a prescribed sine along one line: the closed loop, by two exact legs."""
 
 from __future__ import annotations
 
@@ -15,7 +12,6 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.prescribed.collocation import collocated, plane_loop
 from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, closed_legs
 from frictionlab.methods.prescribed.loop import (
     ELASTIC,
@@ -26,12 +22,10 @@ from frictionlab.methods.prescribed.loop import (
     PrescribedMean,
     Vectors,
 )
-from frictionlab.methods.prescribed.periodic_deflection import natural_reach
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip, nodes
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.contact import resistance
 from frictionlab.motion.orbit.record import Orbit
-from frictionlab.motion.steppers.radau_panel import Oscillation
 from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import EPSILON, Floats
 
@@ -60,16 +54,13 @@ class Along(NamedTuple):
         return 2.0 * math.asin(math.sqrt(0.5 * (size - speed) / size)) if size > speed else 0.0
 
 
-def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
-    """The closed loop, or the range of means and the reason where it is not unique."""
+def line_loop(law: BristleLaw, along: Along) -> Closed | Open:
+    """Return the closed loop of a law with an exact path, or the range of means if it is not unique."""
     if along.size == 0.0 and along.belt_speed == 0.0:
-        return Open.up_to(law, natural_reach(law, 1.0), NOTHING_MOVES)
+        return Open.up_to(law, law.largest_deflection(), NOTHING_MOVES)
     room = law.elastic_deflection() - along.size / along.frequency
     if along.belt_speed == 0.0 and room > 0.0:
         return Open.up_to(law, room, ELASTIC)
-    if not law.exact_path():
-        slip = Oscillation(along.phasor, 0j, along.frequency)
-        return collocated(law, slip, along.belt_speed, tolerance, 0.0)
     return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)
 
 
@@ -114,17 +105,13 @@ ROUNDING = 2.0**-50
 
 
 class BristlePoint:
-    """Scene of a prescribed sine, or of an ellipse, and the answer."""
+    """Scene of a prescribed sine along a line under a law with an exact path, and the answer."""
 
-    def __init__(self, scene: Scene, law: BristleLaw, tolerance: float) -> None:
+    def __init__(self, scene: Scene, law: BristleLaw) -> None:
         self.scene, self.motion, self.belt_speed = scene, scene.motion(), scene.belt_speed
         self.law = law.under_load(self.motion.normal_load)
-        self.line = scene.load_along_belt_only
-        if self.line:
-            along = Along(self.motion.velocity, self.belt_speed, self.motion.frequency)
-            self.closed = line_loop(self.law, along, tolerance)
-        else:
-            self.closed = plane_loop(self.law, self.motion, self.belt_speed, tolerance)
+        along = Along(self.motion.velocity, self.belt_speed, self.motion.frequency)
+        self.closed = line_loop(self.law, along)
         self.seconds = self.closed.seconds
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "estimated"
@@ -132,8 +119,7 @@ class BristlePoint:
 
     def _answer(self, closed: Closed | Open) -> PrescribedMean:
         if isinstance(closed, Open):
-            self.status = "failed" if math.isnan(closed.low) else "not_unique"
-            self.reason, self.error_kind = closed.reason, ""
+            self.status, self.reason, self.error_kind = "not_unique", closed.reason, ""
             return PrescribedMean(low=closed.low, high=closed.high)
         self.model = closed.model
         if self.belt_speed == 0.0 and self.law.obeys("oddness"):
@@ -153,8 +139,7 @@ class BristlePoint:
         angle, _ = nodes(edges)
         tau, deflection = angle / self.motion.frequency, loop.at(angle, loop.deflection)
         v = slip.velocity(tau, np.zeros(1, np.int64)) - self.belt_speed
-        moved = (v.real, deflection) if self.line else (v, deflection.astype(complex))
-        return slip.orbit(tau, _resisted(self.law, *moved))
+        return slip.orbit(tau, _resisted(self.law, v.real, deflection))
 
 
 def _resisted(law: BristleLaw, slip: Any, deflection: Any) -> Vectors:

@@ -4,8 +4,7 @@ Slip of velocity speed*(kappa + cos(psi)), 0 <= kappa < 1, goes forward while |p
 with cos(phi) = kappa. Along each leg the law gives the deflection exactly at any stiffness; there remain one equation
 for the deflection at the start of the forward leg, and quadrature.
 
-Licence (18 scenes): 3.7 times faster in the median than collocation of the same loop
-(2.4 to 67 times; kernels alone 5 to 430), and 57 times faster than the period map of a memory of any size (from 22).
+Licence (18 scenes): 57 times faster in the median than the period map of a memory of any size (from 22).
 """
 
 from __future__ import annotations

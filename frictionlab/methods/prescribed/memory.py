@@ -1,26 +1,21 @@
-"""Laws with several memories or scalars under a prescribed slip: fixed point of their period map."""
+"""Laws with memory under a prescribed slip: fixed point of their period map, to which all starts must lead."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
-from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
-from frictionlab.laws.memory import MemoryLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import (
-    Follow,
-    Trail,
-    corners,
-    iterate_until_periodic,
-    unknown_orbit,
-)
-from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
+from frictionlab.methods.periodic.attraction import Follow, KnownOrbit, corners, unknown_orbit
+from frictionlab.methods.periodic.continuation import DIFFERENTIATED, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
-from frictionlab.methods.periodic.period_map import size_of
+from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit
+from frictionlab.methods.periodic.period_map import map_kind, size_of
+from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
 from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
@@ -29,87 +24,130 @@ from frictionlab.motion.orbit.record import End, Orbit
 from frictionlab.scene.body import BodyNumbers, Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.varying import packed
-from frictionlab.theory.rest import friction_at_rest
-from frictionlab.values.quantities import Floats
+from frictionlab.theory.rest import friction_at_rest, largest_spring_force
+from frictionlab.values.quantities import EPSILON, Floats
 
-PERIODS = 100
-"""Number of periods for which a memory that does not forget is followed from each start."""
-FORGETS = 1.0 - 1e-6
-"""Largest multiplier of a memory that converges from every start."""
+PERIODS = 400
+"""Largest number of periods for which a memory is followed plainly from each start."""
 FINE, SAME_MEAN = 1e-9, 1e-6
 """Accuracy of maps with which starts are followed, over the normal load, and largest range of equal means."""
-HOLDS = "a deflection that never yields keeps what it began with"
+HOLDS = "a deflection keeps what it began with, for ever or for thousands of periods"
+WITHIN = "the slip stays within the elastic range of the contact"
 WANDERS = "the memory does not converge from different starts"
-TWO_STARTS = "2 starts ended here, with no memory and with that of steady sliding"
+
+
+class PrescribedPeriods(PeriodicProblem):
+    """Period map of a memory under a slip that is prescribed."""
+
+    def __init__(self, scene: Scene, law: BristleLaw | MemoryLaw, tolerance: float) -> None:
+        self.mass: Any = scene.motion()
+        self.law, self.kernel = law.under_load(self.mass.normal_load), answer_curve
+        self.zero = 0.0 if scene.load_along_belt_only else 0j
+        self.body = driven(self.mass, self.zero)
+        self.common, self.undamped = self.body.periods, True
+        self.maps = table_of_maps(self.law, self.body)
+        self.goal = Goal(tolerance, False, False, False)
+        self.size = interpreted(size_of)(self.law, self.zero)
+        self.kind = map_kind(self.law, isinstance(self.zero, complex))
+
+    def carried(
+        self, belt_speed: float, state: Floats, most: int, known: KnownOrbit | None = None
+    ) -> Transient:
+        """Follow a memory by fine maps: one that holds keeps their errors."""
+        how = Follow(FINE * self.mass.normal_load, constant=False)
+        return self._follow(belt_speed, state, most, how, known or unknown_orbit(self.size))
+
+    @property
+    def free_period(self) -> float:
+        """Return 0: no free mass swings."""
+        return 0.0
 
 
 class MemoryPoint:
     """Scene of prescribed slip, law with memory, and the answer."""
 
-    def __init__(self, scene: Scene, law: MemoryLaw, tolerance: float) -> None:
-        self.motion, self.belt_speed = scene.motion(), scene.belt_speed
-        self.law = law.under_load(self.motion.normal_load)
-        self.zero: complex = 0.0 if scene.load_along_belt_only else 0j
-        self.body = driven(self.motion, self.zero)
-        self.maps = table_of_maps(self.law, self.body)
+    def __init__(self, scene: Scene, law: BristleLaw | MemoryLaw, tolerance: float) -> None:
+        self.scene, self.problem = scene, PrescribedPeriods(scene, law, tolerance)
+        self.law = cast("Any", self.problem.law)
+        self.motion = self.problem.mass
         self.slip = None if scene.is_harmonic else VaryingSlip.of(scene.signals(), self.motion.normal_load)
         self.status: Status = "ok"
         self.reason, self.model = "", str(ModelWord.PRESCRIBED_MEMORY)
         self.error_kind, self.seconds = "estimated", 0.0
-        self.curve: Curve | None = None
+        self.state: Floats | None = None
         self.reached: list[Floats] = []
         self.tested = ""
-        self.found = self._answer(tolerance) if self._fastest() > 0.0 else self._left_open([], "no slip")
+        room = self._elastic_room()
+        if self._fastest() == 0.0:
+            self.found = self._left_open([], "no slip")
+        elif room > 0.0:
+            ends = abs(self.law.friction(0.0, room, 0.0))
+            self.found = self._left_open([-ends, ends], WITHIN)
+        else:
+            self.found = self._answer()
 
     def _fastest(self) -> float:
         """Return a bound on the speed of the slip."""
         parts = self.motion.velocity, self.motion.transverse_velocity
         sizes = map(abs, parts) if self.slip is None else (self.slip.along.size(), self.slip.across.size())
-        return abs(self.belt_speed) + sum(sizes)
+        return float(abs(self.scene.belt_speed) + sum(sizes))
 
-    def _answer(self, tolerance: float) -> PrescribedMean:
-        guess = np.zeros((1, interpreted(size_of)(self.law, self.zero)))
-        self.goal = Goal(tolerance, False, True, False)
-        curve = self._called(guess, DIFFERENTIATED)
-        multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
-        forgets = curve.closed.found[0] and curve.reached[0] and multiplier <= FORGETS
-        if not forgets or (self.belt_speed == 0.0 and self.law.memory_kind == "deflections"):
-            # On a belt at rest a slider that never yields keeps the deflection it began with.
-            starts = corners(self.maps, self.law, guess[0].size, (0j, 0j), self._fastest())
-            means = [*self._followed_from(starts), *(curve.closed.mean.tolist() if forgets else ())]
-            if self.belt_speed == 0.0 and self.slip is None and self.law.obeys("oddness"):
-                # The mirror image of a state is a state half a period later.
-                means += [-mean for mean in means]
-            if not forgets or max(means) - min(means) > max(float(curve.closed.error[0]), SAME_MEAN):
-                return self._left_open(means, WANDERS if self.law.memory_kind == "scalars" else HOLDS)
-        self.curve = curve
-        constants = curve.reached[0] * -math.log(max(multiplier, 1e-300))
-        self.tested = (
-            f"tested: {TWO_STARTS}, each followed for {constants:.2g} or more of the slowest time constant"
-        )
+    def _elastic_room(self) -> float:
+        """Return the largest mean deflection along x1 of a bristle that never leaves its elastic range; else <= 0."""
+        reach: float = self.law.elastic_deflection() if self.law.memory_kind == "bristle" else 0.0
+        if self.scene.belt_speed != 0.0 or self.slip is not None or not 0.0 < reach < math.inf:
+            return 0.0
+        if self.scene.load_along_belt_only:
+            return reach - abs(self.motion.velocity) / self.motion.frequency
+        turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 1441)) / self.motion.frequency
+        path = (self.motion.velocity * turn).real + 1j * (self.motion.transverse_velocity * turn).real
+        return largest_spring_force(path, np.full(len(path), reach))
+
+    def _answer(self) -> PrescribedMean:
+        problem, scene = self.problem, self.scene
+        curve, seconds = problem.close([scene], np.zeros(problem.size), wanted=DIFFERENTIATED)
+        found = closed_orbit(curve, curve.closed.mean) if curve.closed.found[0] else None
+        follower = Follower(problem, scene, found, PERIODS)
+        ends = [follower.led(start)[0] for start in self._starts()]
+        self.seconds = seconds + follower.seconds
+        first = ends[0]
+        mirrored = self._is_mirrored and abs(first.mean) > max(first.error, SAME_MEAN)
+        if first.curve is None or mirrored or not all(first.agrees(one) for one in ends):
+            return self._without_one(ends)
+        curve, self.state = first.curve, first.points[0]
+        self.tested = f"tested: {len(ends)} starts ended here, with no memory and with that of steady sliding"
         closed = curve.closed
-        return PrescribedMean(complex(closed.mean[0], closed.across[0]), closed.error[0])
+        if self._is_mirrored and self.law.memory_kind == "bristle":
+            self.model, self.error_kind = str(ModelWord.SYMMETRY), "guaranteed"
+            return PrescribedMean(0j, EPSILON * friction_at_rest(self.law))
+        return PrescribedMean(complex(closed.mean[0], closed.across[0]), float(closed.error[0]))
 
-    def _called(self, states: Floats, wanted: Wanted) -> Curve:
-        arguments = self.body.periods, np.array([self.belt_speed]), states, self.goal, wanted
-        curve, seconds = KernelCall(answer_curve).timed(self.maps, *arguments)
-        self.seconds += seconds
-        return curve
+    @property
+    def _is_mirrored(self) -> bool:
+        """Check that the mirror image of a state is a state half a period later."""
+        return self.scene.belt_speed == 0.0 and self.slip is None and self.law.obeys("oddness")
 
-    def _followed_from(self, starts: list[Floats]) -> list[float]:
-        """Return the mean of the last period from each start; keep the states reached."""
-        means: list[float] = []
-        for start in starts:
-            each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(start)))
-            states[0] = start
-            how = Follow(FINE * self.motion.normal_load, False)
-            orbit, trail = unknown_orbit(len(start)), Trail(each, states)
-            arguments = self.maps, self.belt_speed, self.body.periods, how, orbit, trail
-            (_, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
-            self.seconds += seconds
-            means.append(float(each[count - 1]))
-            self.reached.append(states[count])
-        return means
+    def _starts(self) -> list[Floats]:
+        """Return memories to start from: those of steady sliding first, none last.
+
+        On a belt at rest they are combined: a slider that never yields keeps the deflection it began with.
+        """
+        belt = self.scene.belt_speed
+        speed = math.copysign(self._fastest(), belt)
+        found = corners(self.problem.maps, self.law, self.problem.size, (0j, 0j), -speed)
+        return found if belt == 0.0 and self.law.memory_kind != "scalars" else [found[0], found[-1]]
+
+    def _without_one(self, ends: list[Attractor]) -> PrescribedMean:
+        """Return the range of means of starts that end apart."""
+        section = DrivePeriods(self.problem, self.scene)
+        held = [section.held(one.points[-1]) if one.neutral else None for one in ends]
+        pairs = list(zip(ends, held, strict=True))
+        self.reached = [one.points[-1] if state is None else state.state for one, state in pairs]
+        means = [
+            each for one, state in pairs for each in ((one.low, one.high) if state is None else (state.mean,))
+        ]
+        means += [-mean for mean in means] if self._is_mirrored else []
+        return self._left_open(means, WANDERS if self.law.memory_kind == "scalars" else HOLDS)
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
         self.status, self.error_kind = "not_unique", ""
@@ -120,20 +158,17 @@ class MemoryPoint:
 
     def orbit(self) -> Orbit | None:
         """Return one period of the prescribed motion with its friction; None if the memory was not found."""
-        return None if self.curve is None else self._recorded(self.curve.states)
+        return None if self.state is None else self._recorded(self.state)
 
     def ends(self) -> list[End]:
         """Return where starts ended, that from rest last, if the mean depends on the start."""
-        reached = (state[None] for state in self.reached if self.status == "not_unique")
-        return [End(self._recorded(state), self.goal.tolerance) for state in reached]
+        reached = self.reached if self.status == "not_unique" else []
+        return [End(self._recorded(state), self.problem.goal.tolerance) for state in reached]
 
-    def _recorded(self, states: Floats) -> Orbit:
-        found = self._called(states, RECORDED)
-        track, end = found.orbits, found.ends[0]
-        tau, x, v, friction, stick = (
-            part[:end] for part in (track.tau, track.x, track.v, track.friction, track.stick)
-        )
-        return Orbit(tau, x, v, friction, stick) if self.slip is None else self.slip.orbit(tau, friction)
+    def _recorded(self, state: Floats) -> Orbit:
+        found = self.problem.orbits([self.scene], [state]).one(0)
+        assert found is not None
+        return found if self.slip is None else self.slip.orbit(found.tau, found.friction)
 
 
 def driven(motion: Motion, zero: complex) -> BodyNumbers:

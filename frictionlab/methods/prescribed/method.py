@@ -102,11 +102,10 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
     line = scene.load_along_belt_only
     if not line and law.planar_form() == "per-axis":
         return AxesPoint(scene, lambda axis: _bristle_point(axis, law, tolerance))
-    if scene.is_harmonic:
-        return BristlePoint(scene, law, tolerance)
     # in a contact that keeps its stiffness, deflections change with the normal load, too
-    known = line and law.exact_path() and not scene.constant_contact
-    return LegsPoint(scene, law) if known else MemoryPoint(scene, law, tolerance)
+    if not line or not law.exact_path() or scene.constant_contact:
+        return MemoryPoint(scene, law, tolerance)
+    return BristlePoint(scene, law) if scene.is_harmonic else LegsPoint(scene, law)
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:

@@ -15,12 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.laws.memory import BristleLaw, bristle_on_the_line
-from frictionlab.methods.prescribed.bristle import Along, BristlePoint, line_loop
+from frictionlab.methods.prescribed.bristle import Along, line_loop
 from frictionlab.methods.prescribed.loop import Open
+from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.reduced.common import ROUNDING, TOLERANCE, Modelled
 from frictionlab.methods.shooting.method import suggest_shooting
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene, Slip
 from frictionlab.scene.scenes import belt_speeds_of
@@ -59,7 +61,16 @@ def over_sine(law: BristleLaw, amplitude: float, belt_speed: float, frequency: f
         moved = amplitude * np.sin(theta), -amplitude / frequency * np.cos(theta)
         rub = [bristle_on_the_line(law, v, z)[1] for v, z in np.transpose(moved).tolist()]
         return OverSine(0.0, complex(2j / _SAMPLES * (rub * np.exp(-1j * theta)).sum()))
-    found = line_loop(law, Along(complex(amplitude), belt_speed, frequency), _OF_LOOPS)
+    if not law.exact_path():
+        slip = Slip(velocity_amplitude=amplitude, frequency=frequency)
+        answers = solve_prescribed([Scene(belt_speed=belt_speed, slip=slip)], law, _OF_LOOPS)
+        orbit = answers.orbit(0)
+        if orbit is None:
+            return OverSine(math.nan, complex(math.nan))
+        shares = 0.5 * np.diff(orbit.tau[:, [0, -1]]) * WEIGHTS * frequency / math.pi
+        first = (shares * orbit.friction.real * np.exp(-1j * frequency * orbit.tau)).sum()
+        return OverSine(-float(answers.mean[0].real), complex(1j * first))
+    found = line_loop(law, Along(complex(amplitude), belt_speed, frequency))
     if isinstance(found, Open):
         return OverSine(math.nan, complex(math.nan))
     loop = found.loop
@@ -119,7 +130,7 @@ def _orbit(scene: Scene, law: BristleLaw, balance: OneBalance | None, mean: floa
     size, lead = cmath.polar(balance.velocity)
     slip = Slip(velocity_amplitude=size, frequency=mass.frequency, phase=math.degrees(lead))
     prescribed = Scene(belt_speed=scene.belt_speed, normal_load=mass.normal_load, slip=slip)
-    orbit = BristlePoint(prescribed, law, TOLERANCE).orbit()
+    orbit = solve_prescribed([prescribed], law, TOLERANCE).orbit(0)
     return None if orbit is None else replace(orbit, x=orbit.x + mass.normal_load * mean, stick=None)
 
 

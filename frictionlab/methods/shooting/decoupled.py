@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Multipliers
+from frictionlab.methods.periodic.follow import multiplier
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
-from frictionlab.methods.shooting.attractors import multiplier
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit

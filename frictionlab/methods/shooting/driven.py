@@ -24,27 +24,22 @@ from frictionlab.methods.base import (
     Status,
 )
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
+from frictionlab.methods.periodic.follow import MOST, Attractor, DrivePeriods, closed_orbit, multiplier
+from frictionlab.methods.periodic.long_mean import DRIVEN, SHARED, is_earned, spread_of_one_mean, too_wide
 from frictionlab.methods.periodic.period_map import MAP_KINDS
-from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
+from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus, undamped
 from frictionlab.methods.prescribed.memory import HOLDS
 from frictionlab.methods.shooting.attractors import (
-    MOST,
-    Attractor,
-    DrivePeriods,
     FollowedStarts,
     Trial,
     carried_for,
-    closed_orbit,
     describe,
     follow_all,
     found_state,
     left_unfinished,
-    multiplier,
     quick_starts,
     same_state,
-    undamped,
 )
-from frictionlab.methods.shooting.long_mean import DRIVEN, SHARED, is_earned, spread_of_one_mean, too_wide
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord

@@ -15,15 +15,9 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
+from frictionlab.methods.periodic.follow import Attractor, closed_orbit
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.methods.shooting.attractors import (
-    Attractor,
-    FollowedStarts,
-    all_starts,
-    closed_orbit,
-    found_state,
-    same_state,
-)
+from frictionlab.methods.shooting.attractors import FollowedStarts, all_starts, found_state, same_state
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene

@@ -8,17 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from frictionlab.methods.periodic.follow import MOST, POINTS_KEPT, Attractor, ends_on, orbit_at_the_end
+from frictionlab.methods.periodic.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
-from frictionlab.methods.shooting.attractors import (
-    MOST,
-    POINTS_KEPT,
-    Attractor,
-    FollowedStarts,
-    carried_for,
-    ends_on,
-    orbit_at_the_end,
-)
-from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean, near_each_other
+from frictionlab.methods.shooting.attractors import FollowedStarts, carried_for
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.values.quantities import Floats

@@ -20,8 +20,8 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import STATISTICAL, Answers, Status
 from frictionlab.methods.periodic.attraction import KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
-from frictionlab.methods.shooting.leaps import Leaper
-from frictionlab.methods.shooting.long_mean import (
+from frictionlab.methods.periodic.leaps import Leaper
+from frictionlab.methods.periodic.long_mean import (
     FREE,
     LongMean,
     birkhoff_mean,

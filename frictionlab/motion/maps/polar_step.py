@@ -29,9 +29,29 @@ from frictionlab.motion.equation import (
 )
 from frictionlab.motion.linalg import eliminate
 from frictionlab.motion.maps.case import Case
-from frictionlab.motion.steppers.radau_panel import MATRIX, NODES, STAGES, WEIGHTS
 from frictionlab.values.quantities import Floats
 
+STAGES = 5
+"""Number of stages of a step by Radau IIA (order 9, L-stable; Hairer & Wanner 1996, IV.5)."""
+
+
+def _radau() -> tuple[Floats, Floats]:
+    """Return nodes in (0, 1] and the matrix that integrates the polynomial through them from 0 to each."""
+    legendre = np.polynomial.legendre.Legendre.basis
+    # The nodes of Radau IIA are the zeros of P_s - P_(s-1), the right end 1 among them: it is divided out.
+    inside = (legendre(STAGES) - legendre(STAGES - 1)) // np.polynomial.Polynomial([-1.0, 1.0]).convert(
+        kind=np.polynomial.Legendre
+    )
+    nodes = np.concatenate((0.5 * (1.0 + np.sort(inside.roots().real)), [1.0]))
+    # Row i integrates every monomial up to node i; the inverse turns values at the nodes into monomials.
+    powers = np.arange(STAGES)
+    values = nodes[:, None] ** powers
+    sums = nodes[:, None] ** (powers + 1) / (powers + 1)
+    return nodes, sums @ np.linalg.inv(values)
+
+
+NODES, MATRIX = _radau()
+WEIGHTS: Floats = MATRIX[-1].copy()
 DIRECTIONS = 4
 """Number of directions of the state: positions and slip, along and across."""
 MOST_TRIES = 10

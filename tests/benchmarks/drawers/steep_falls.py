@@ -14,8 +14,8 @@ from campaign import WRONG, Campaign, Drawn, Keys, Verdicts, law_of, log_uniform
 
 import frictionlab as fl
 from frictionlab.methods.periodic.attraction import ARRIVED
+from frictionlab.methods.periodic.follow import Attractor, closed_orbit, orbit_at_the_end
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.methods.shooting.attractors import Attractor, closed_orbit, orbit_at_the_end
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import falls_slowly

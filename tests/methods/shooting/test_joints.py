@@ -123,5 +123,5 @@ def test_sliders_that_meet_their_limit_as_slip_reverses_are_unloaded() -> None:
         states = np.zeros((2, point.reached[0].size))
         states[0, 2:] = amplitude - reach - beyond
         path = unknown_orbit(len(states[0])), Trail(np.empty(1), states)
-        KernelCall(iterate_until_periodic)(point.maps, 0.0, point.body.periods, follow, *path)
+        KernelCall(iterate_until_periodic)(point.problem.maps, 0.0, point.problem.common, follow, *path)
         assert np.abs(states[1] - states[0])[2:].max() < 20 * accuracy

@@ -15,9 +15,9 @@ from profiles import deep, some
 from scipy.integrate import quad
 
 import frictionlab as fl
+from frictionlab.methods.periodic.leaps import Leaper, power_sum
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import follow_all
-from frictionlab.methods.shooting.leaps import Leaper, power_sum
 from frictionlab.values.quantities import Floats
 
 

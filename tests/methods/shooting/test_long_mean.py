@@ -9,9 +9,10 @@ import pytest
 from profiles import deep, some
 
 import frictionlab as fl
+from frictionlab.methods.periodic.follow import Attractor
+from frictionlab.methods.periodic.long_mean import LongMean, birkhoff_mean, long_mean
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
-from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts
-from frictionlab.methods.shooting.long_mean import LongMean, birkhoff_mean, long_mean
+from frictionlab.methods.shooting.attractors import FollowedStarts
 from frictionlab.methods.shooting.long_motions import (
     LongMotion,
     average_unrepeated,

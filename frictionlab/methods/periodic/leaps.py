@@ -22,8 +22,8 @@ import numpy as np
 from frictionlab.methods.periodic.attraction import KnownOrbit
 from frictionlab.values.quantities import Floats
 
-MOST_MAPS = 5000
-"""Number of true maps after which no further leap is tried."""
+FEW_MAPS, MOST_MAPS, PAYS = 2000, 5000, 5
+"""Numbers of true maps after which no further leap is tried: MOST_MAPS if each has led over PAYS periods."""
 SHARE, FLOOR = 0.02, 1e-9
 """Largest error of a leap: SHARE of the distance that it leads, plus FLOOR of the size of the state."""
 ON_THE_WAY = (0.11, 0.3, 0.62, 0.83)
@@ -101,6 +101,10 @@ class Leaper:
         """Number of periods of the shortest leap: it costs no more than as many true maps."""
         return self.state.size + 3
 
+    @property
+    def _most(self) -> int:
+        return MOST_MAPS if self.periods > PAYS * self.maps else FEW_MAPS
+
     def leap(self) -> Floats | None:
         """Lead the motion on by one leap.
 
@@ -109,7 +113,7 @@ class Leaper:
         base = self._mapped(self.state[None])[0] - self.state
         matrix = self._derivative()
         length = self._within_growth(matrix)
-        while length >= self.fewest and np.isfinite(matrix).all() and self.maps < MOST_MAPS:
+        while length >= self.fewest and np.isfinite(matrix).all() and self.maps < self._most:
             moved, error, defect = self._tried(matrix, base, length)
             allowed = SHARE * float(np.linalg.norm(moved)) + FLOOR * self._size
             ratio = error / allowed if math.isfinite(error) else math.inf
@@ -181,8 +185,11 @@ def power_sum(matrix: Floats, length: int) -> tuple[Floats, Floats]:
 
 
 def _newton(matrix: Floats, base: Floats) -> Floats:
-    """Return the step to the fixed point of the affine map; the shortest such step if multipliers are one."""
-    return np.asarray(np.linalg.lstsq(np.eye(len(base)) - matrix, base, rcond=1e-7)[0])
+    """Return the shortest step to the fixed point of an affine map; infinity if it has none."""
+    moves = np.eye(len(base)) - matrix
+    step = np.asarray(np.linalg.lstsq(moves, base, rcond=1e-7)[0])
+    missed = np.linalg.norm(moves @ step - base) > 0.1 * np.linalg.norm(base)
+    return np.full_like(step, math.inf) if missed else step
 
 
 def _spread(matrix: Floats) -> list[int]:

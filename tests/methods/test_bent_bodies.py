@@ -146,14 +146,14 @@ def test_both_states_of_a_bistable_oscillator_are_found_and_are_those_of_another
         assert chosen.mean_friction == pytest.approx(mean, abs=1e-7)
 
 
-@pytest.mark.parametrize("method", ["auto", pytest.param("march", marks=compiling)])
+@pytest.mark.parametrize("method", ["auto", "march"])
 @pytest.mark.parametrize("cubic", [-0.05, -1.0, -100.0])
 def test_a_body_without_a_steady_state_fails_with_the_reason(cubic: float, method: str) -> None:
     scene = LINE | {"normal_load": 1, "belt_speed": 0.5, "drive": {"amplitude": 3, "frequency": 1}}
     state = answered(scene | {"body": {"cubic_stiffness": cubic}}, method=method)
 
     assert state.status == "failed"
-    assert ("starts run away" if method == "auto" else "grows without bound") in state.reason
+    assert "starts run away" in state.reason
 
 
 def test_starts_that_run_away_beside_a_steady_state_are_told() -> None:

@@ -58,12 +58,14 @@ class Goal(NamedTuple):
 
     check_attraction: whether the two cheap starts are followed to see that they converge to the orbit. constant:
     whether friction is the same at every speed of slip that never reverses, so that this is an orbit in closed form.
+    work: steps that a search may take.
     """
 
     tolerance: float
     contracts: bool
     check_attraction: bool
     constant: bool
+    work: int
 
 
 class FixedPoint(NamedTuple):
@@ -399,14 +401,6 @@ def _first_accuracy(setting: Setting, tolerance: float) -> Any:
     return first_accuracy_without_memory(asked), 10.0
 
 
-@inner
-def _most_work(setting: Setting, goal: Goal) -> int:
-    """How many steps a search may take."""
-    if not goal.contracts:
-        return MUCH_WORK
-    return LITTLE_WORK if setting.maps.planar else UTMOST_WORK
-
-
 # --- the search -----------------------------------------------------------------------------------------------------
 
 
@@ -444,7 +438,7 @@ def fixed_point(
         if now.image.steps < 0 or not length < 1e300:
             break
         # what repels, or is not there, is not to be found: other starts, or other maps, will tell
-        if now.maps * now.image.steps > _most_work(setting, goal):
+        if now.maps * now.image.steps > goal.work:
             break
         # A period that is all stick says nothing of the orbit: its map is a shift by the way of the belt.
         if now.image.stuck >= scales.period * (1.0 - 1e-9):

@@ -33,7 +33,7 @@ from frictionlab.methods.periodic.continuation import (
     answer_curve,
     recorded_accuracy,
 )
-from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.fixed_point import LITTLE_WORK, MUCH_WORK, UTMOST_WORK, Goal
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
 from frictionlab.methods.periodic.lane_record import differentiate_in_lanes, record_in_lanes
 from frictionlab.methods.periodic.near_rest import answer_near_rest
@@ -162,7 +162,10 @@ class PeriodicProblem:
         if constant and self.body.varying:
             self.body = _with_free_state(scene, law, self.body)
         self.maps = table_of_maps(law, self.body)
-        self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
+        contracts, planar = is_convergent(scene, law), isinstance(self.zero, complex)
+        # in the plane other searches follow; where one orbit attracts all motions it is there to be found
+        work = MUCH_WORK if not contracts else LITTLE_WORK if planar else UTMOST_WORK
+        self.goal = Goal(max(tolerance, FINEST), contracts, check_attraction, constant, work)
         self.size = interpreted(size_of)(law, self.zero)  # of a state
         self.kind = map_kind(law, isinstance(self.zero, complex))
         self._slides: dict[float, tuple[complex, complex]] = {}  # places, by the friction that shifts them
@@ -200,7 +203,8 @@ class PeriodicProblem:
         if state is None and wanted == CLOSED and self.in_lanes(len(scenes)):
             return self._close_in_lanes(belt_speeds_of(scenes), periods)
         guess = np.empty((0, 0)) if state is None else state[None, :]
-        goal = self.goal if state is None else self.goal._replace(check_attraction=False)
+        work = UTMOST_WORK if self.goal.contracts else MUCH_WORK
+        goal = self.goal if state is None else self.goal._replace(check_attraction=False, work=work)
         return self.called(belt_speeds_of(scenes), guess, goal, wanted, periods)
 
     def in_lanes(self, points: int) -> bool:

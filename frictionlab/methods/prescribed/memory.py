@@ -12,7 +12,7 @@ from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.periodic.attraction import Follow, KnownOrbit, corners, unknown_orbit
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, answer_curve
-from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.fixed_point import MUCH_WORK, Goal
 from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit
 from frictionlab.methods.periodic.period_map import map_kind, size_of
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
@@ -46,7 +46,7 @@ class PrescribedPeriods(PeriodicProblem):
         self.body = driven(self.mass, self.zero)
         self.common, self.undamped = self.body.periods, True
         self.maps = table_of_maps(self.law, self.body)
-        self.goal = Goal(tolerance, False, False, False)
+        self.goal = Goal(tolerance, False, False, False, MUCH_WORK)
         self.size = interpreted(size_of)(self.law, self.zero)
         self.kind = map_kind(self.law, isinstance(self.zero, complex))
 

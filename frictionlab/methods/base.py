@@ -86,6 +86,70 @@ class Answers:
     balanced: bool = True
 
 
+class Ledger:
+    """Answers of a curve on their way, one entry for each of n scenes, which has failed until it is entered.
+
+    Numbers that are not known are NaN. low, high, window: as ``mean_low``, ``mean_high`` and ``window`` of
+    ``Answers``.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.status: list[Status] = ["failed"] * count
+        self.reason, self.model, self.error_kind, self.unique = ([""] * count for _ in range(4))
+        self.mean = np.full(count, complex(math.nan, math.nan))
+        self.error, self.period, self.low, self.high, self.window, self.seconds = np.full((6, count), np.nan)
+
+    def accept(
+        self, i: int, mean: complex, error: float, period: float = math.nan, kind: str = "estimated"
+    ) -> None:
+        """Enter a mean, its error and the period of the response."""
+        self.clear(i)
+        self.status[i], self.mean[i], self.error[i] = "ok", mean, error
+        self.period[i], self.error_kind[i] = period, kind
+
+    def leave_open(self, i: int, reason: str, low: float, high: float, window: float) -> None:
+        """Enter that the mean depends on the start, and the range of means over so many periods."""
+        self.clear(i)
+        self.status[i], self.reason[i] = "not_unique", reason
+        self.low[i], self.high[i], self.window[i] = low, high, window
+
+    def fail(self, i: int, reason: str, status: Status = "failed") -> None:
+        """Enter that there is no mean, and why."""
+        self.clear(i)
+        self.status[i], self.reason[i] = status, reason
+
+    def clear(self, i: int) -> None:
+        """Forget all but the kernel time."""
+        self.status[i], self.mean[i] = "failed", complex(math.nan, math.nan)
+        for words in (self.reason, self.model, self.error_kind, self.unique):
+            words[i] = ""
+        for numbers in (self.error, self.period, self.low, self.high, self.window):
+            numbers[i] = math.nan
+
+    def remark(self, i: int, text: str) -> None:
+        """Add a sentence to the reason."""
+        self.reason[i] = "; ".join(filter(None, (self.reason[i], text)))
+
+    def answers(self, **others: Any) -> Answers:
+        """Return the answers as every method gives them. others: what makes orbits, multipliers and states."""
+        ok = [status == "ok" for status in self.status]
+        return Answers(
+            status=self.status,
+            reason=self.reason,
+            model=self.model,
+            error_kind=[kind if good else "" for kind, good in zip(self.error_kind, ok, strict=True)],
+            mean=self.mean,
+            error=self.error,
+            period=self.period,
+            mean_low=self.low,
+            mean_high=self.high,
+            window=self.window,
+            unique=self.unique,
+            seconds=self.seconds,
+            **others,
+        )
+
+
 class FoundState(NamedTuple):
     """A state that a motion ended in: the scene's place on its curve, its period in drive periods (0: never repeats).
 

@@ -8,15 +8,13 @@ have none, march has none either.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-import numpy as np
-
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import PROVED, Answers, Status
+from frictionlab.methods.base import PROVED, Answers, Ledger, Status
 from frictionlab.methods.march.laps import CLOSED, LATE, RESTING, STALLED, TIRED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.refusal import FEWEST_LAPS, WORK, unstable
 from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
@@ -33,6 +31,7 @@ READABLE = 4096
 """Most steps per period of the run that the columns besides the mean are read from."""
 ROUNDING = 1e-13
 """Rounding error of the mean coefficient from summing the impulses of a period, and a thousandth of it per step."""
+APERIODIC = "rounding to time steps makes the motion aperiodic: averaged over {:.0f} periods"
 NOT_KNOWN = "how far off time steps are is not known, for no other method tells the mean: "
 
 
@@ -202,58 +201,49 @@ def why_not(run: MarchResult) -> str:
 # --- answers ------------------------------------------------------------------------------------------------------
 
 
-@dataclass
-class PointAnswer:
-    """Mean friction (x1 + i x2), the error of its x1 and the period; the range of a mean that depends on the start.
-
-    window: of the range, or of a mean without a period. What is not known is NaN.
-    """
-
-    mean: complex = complex(math.nan, math.nan)
-    error: float = math.nan
-    period: float = math.nan
-    low: float = math.nan
-    high: float = math.nan
-    window: float = math.nan
-
-
 class MarchedPoint:
-    """One scene, marched, and its answer."""
+    """One scene, marched, and what is entered of it at one place of a ledger."""
 
     def __init__(
         self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan, full: FullAnswer
     ) -> None:
-        self.scene, self.law, self.plan, self.full = scene, law, plan, full
+        self.scene, self.law, self.plan, self.full, self.tolerance = scene, law, plan, full, tolerance
         self.march = MarchRun(scene, law, plan.stepper)
-        self.answer = PointAnswer()
-        self.status: Status = "failed"
-        self.reason, self.model, self.unique = "", "", ""
         self.orbit: Callable[[], Orbit | None] = nowhere
-        if full.status == "ok":
-            self._judge(Runs(self.march, plan, tolerance, full.mean), tolerance)
-        elif full.status == "not_unique":
-            self.status, self.reason, self.unique = "not_unique", full.reason, full.unique
-            self.answer = PointAnswer(low=full.low, high=full.high, window=full.window)
-        else:
-            self.status, self.reason = full.status, NOT_KNOWN + full.reason
-        self.seconds = self.march.seconds
 
-    def _judge(self, runs: Runs, tolerance: float) -> None:
+    def enter(self, ledger: Ledger, i: int) -> None:
+        """March the scene, and enter the answer."""
+        full = self.full
+        if full.status == "ok":
+            self._judge(Runs(self.march, self.plan, self.tolerance, full.mean), ledger, i)
+        elif full.status == "not_unique":
+            ledger.leave_open(i, full.reason, full.low, full.high, full.window)
+            ledger.unique[i] = full.unique
+        else:
+            ledger.fail(i, NOT_KNOWN + full.reason, full.status)
+        ledger.seconds[i] = self.march.seconds
+
+    def _judge(self, runs: Runs, ledger: Ledger, i: int) -> None:
         run = runs.asked
         if not run.settled:
-            self._give_up(run)
+            ledger.fail(i, *self._why_not(run))
             return
         error = runs.apart + self.full.error
         # steps can keep a motion from repeating as soon as it would
         laps = self.full.period / self.march.periods if not self.scene.undriven else math.nan
-        alike = run.high - run.low <= max(error, tolerance)
+        alike = run.high - run.low <= max(error, self.tolerance)
         own = round(laps) if math.isfinite(laps) else 1 if alike else run.stride
-        self.status, self.unique = "ok", self.full.unique if self.full.unique != PROVED else ""
         self.orbit = partial(self._orbit, runs.readable, run.stride if self.scene.undriven else own)
-        self.answer = PointAnswer(run.mean, error, self._period(run, own))
+        ledger.accept(i, run.mean, error, self._period(run, own))
+        ledger.unique[i] = self.full.unique if self.full.unique != PROVED else ""
         theta = f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
-        self.model = f"march, {self.plan.stepper}{theta}: {self._pace(run)}"
-        self._remark(run, tolerance)
+        ledger.model[i] = f"march, {self.plan.stepper}{theta}: {self._pace(run)}"
+        if run.verdict == STALLED:
+            averaged = self.march.window * self.march.periods
+            ledger.remark(i, APERIODIC.format(averaged))
+        if not error <= self.tolerance:
+            ledger.remark(i, f"the error is above the tolerance {self.tolerance:.1e}")
+        ledger.remark(i, self.full.reason if ledger.unique[i] else "")
 
     def _pace(self, run: MarchResult) -> str:
         """Return the steps or the smoothing of a run in words."""
@@ -261,29 +251,16 @@ class MarchedPoint:
             return f"{self.plan.smoothing} of width {self.plan.width:g}"
         return f"{run.pace.steps} steps per period"
 
-    def _give_up(self, last: MarchResult) -> None:
-        """Tell why there is no steady state: refused where other steps would do, else failed."""
-        self.reason = f"the motion {why_not(last)}"
+    def _why_not(self, last: MarchResult) -> tuple[str, Status]:
+        """Return why there is no steady state, and the status: refused where other steps would do, else failed."""
+        reason = f"the motion {why_not(last)}"
         if last.verdict == TOO_FAST and math.isfinite(last.met):
-            self.status = "refused"
             fewest = math.ceil(steps_needed(self.march, last))
-            self.reason = unstable(last.pace.steps, fewest, self.law, self.plan.stepper)
+            return unstable(last.pace.steps, fewest, self.law, self.plan.stepper), "refused"
         if last.verdict == TOO_STIFF:
-            self.status = "refused"
             fewest_said = f"{steps_needed(self.march, last):.2g}"
-            self.reason += f": about {fewest_said} are enough; or use method shooting"
-
-    def _remark(self, run: MarchResult, tolerance: float) -> None:
-        """Note what the mean was averaged over, and an error above the tolerance."""
-        averaged = self.march.window * self.march.periods
-        notes = [
-            f"rounding to time steps makes the motion aperiodic: averaged over {averaged:.0f} periods"
-            if run.verdict == STALLED
-            else "",
-            "" if self.answer.error <= tolerance else f"the error is above the tolerance {tolerance:.1e}",
-            self.full.reason if self.unique else "",
-        ]
-        self.reason = "; ".join(filter(None, notes))
+            return f"{reason}: about {fewest_said} are enough; or use method shooting", "refused"
+        return reason, "failed"
 
     def _period(self, run: MarchResult, own: int) -> float:
         if not self.scene.undriven:
@@ -304,22 +281,3 @@ class MarchedPoint:
 
 def nowhere() -> None:
     """Return no orbit."""
-
-
-def answers_of(points: Sequence[MarchedPoint]) -> Answers:
-    """Return the answers of points, none of which hangs on another."""
-    return Answers(
-        status=[point.status for point in points],
-        reason=[point.reason for point in points],
-        model=[point.model for point in points],
-        error_kind=["estimated" if point.status == "ok" else "" for point in points],
-        mean=np.array([point.answer.mean for point in points]),
-        error=np.array([point.answer.error for point in points]),
-        period=np.array([point.answer.period for point in points]),
-        mean_low=np.array([point.answer.low for point in points]),
-        mean_high=np.array([point.answer.high for point in points]),
-        window=np.array([point.answer.window for point in points]),
-        unique=[point.unique for point in points],
-        seconds=np.array([point.seconds for point in points]),
-        orbit=lambda i: points[i].orbit(),
-    )

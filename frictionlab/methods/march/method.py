@@ -8,8 +8,8 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive
-from frictionlab.methods.base import Answers, Method
-from frictionlab.methods.march.judge import FullAnswer, MarchedPoint, Plan, answers_of
+from frictionlab.methods.base import Answers, Ledger, Method
+from frictionlab.methods.march.judge import FullAnswer, MarchedPoint, Plan
 from frictionlab.methods.march.refusal import Request, reasons_against
 from frictionlab.methods.march.steppers import STEPPERS, StepperName, steppers_of
 from frictionlab.methods.reduced.common import full_answers
@@ -119,10 +119,11 @@ class March(Method):
         law = law.under_load(scenes[0].normal_load)
         theta, width, smoothing = self.theta or 0.5, self.width or 0.01, self.smoothing or "tanh"
         plan = Plan(self._stepper(law), theta, self.steps, width, smoothing, self.periods)
-        full = full_answers(scenes, law)
-        return answers_of(
-            [
-                MarchedPoint(scene, law, tolerance, plan, FullAnswer.of(full, i))
-                for i, scene in enumerate(each_told(scenes))
-            ]
-        )
+        full, ledger = full_answers(scenes, law), Ledger(len(scenes))
+        points = [
+            MarchedPoint(scene, law, tolerance, plan, FullAnswer.of(full, i))
+            for i, scene in enumerate(scenes)
+        ]
+        for i, point in enumerate(each_told(points)):
+            point.enter(ledger, i)
+        return ledger.answers(orbit=lambda i: points[i].orbit())

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import PROVED, TESTED, Answers, Status
+from frictionlab.methods.base import PROVED, TESTED, Answers, Ledger, Status
 from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.memory import MemoryPoint
@@ -133,27 +133,17 @@ def _ends(row: Point) -> list[End]:
 
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
-    rows = [_point(scene, law, tolerance) for scene in each_told(scenes)]
-    for row in rows:
-        if row.status == "ok" and row.found.error > tolerance:
-            row.reason = f"error {row.found.error:.1e} above the tolerance: only rounding errors remain"
-    found = [row.found for row in rows]
-    unique = [_told_uniqueness(row) for row in rows]
-    ok = np.array([row.status == "ok" for row in rows])
-    low = np.array([each.low for each in found])
-    return Answers(
-        status=[row.status for row in rows],
-        reason=[row.reason for row in rows],
-        model=[row.model for row in rows],
-        error_kind=[row.error_kind for row in rows],
-        mean=np.array([each.mean for each in found]),
-        error=np.array([each.error for each in found]),
-        period=np.where(ok, float(scenes[0].periods), np.nan),
-        mean_low=low,
-        mean_high=np.array([each.high for each in found]),
-        window=np.where(np.isnan(low), np.nan, 1.0),
-        unique=unique,
-        seconds=np.array([row.seconds for row in rows]),
-        orbit=lambda i: rows[i].orbit(),
-        ends=lambda i: _ends(rows[i]),
-    )
+    rows, ledger = [_point(scene, law, tolerance) for scene in each_told(scenes)], Ledger(len(scenes))
+    for i, row in enumerate(rows):
+        found = row.found
+        if row.status == "ok":
+            unique = _told_uniqueness(row)
+            ledger.accept(i, found.mean, found.error, float(scenes[0].periods), row.error_kind)
+            ledger.model[i], ledger.reason[i], ledger.unique[i] = row.model, row.reason, unique
+            if found.error > tolerance:
+                ledger.remark(i, f"error {found.error:.1e} above the tolerance: only rounding errors remain")
+        else:
+            ledger.leave_open(i, row.reason, found.low, found.high, 1.0)
+            ledger.model[i] = row.model
+        ledger.seconds[i] = row.seconds
+    return ledger.answers(orbit=lambda i: rows[i].orbit(), ends=lambda i: _ends(rows[i]))

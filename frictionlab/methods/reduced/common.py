@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, ReducedModel, Status, beyond_linear
+from frictionlab.methods.base import Answers, Ledger, ReducedModel, beyond_linear
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.shooting.method import Shooting, suggest_shooting
@@ -79,23 +79,18 @@ class OfOneModel(ReducedModel):
         decays = steady[0].degrees_of_freedom == 2 and steady[0].load_along_belt_only
         text = f"{found.text}; {ModelWord.X2_DECAYS}" if decays else str(found.text)
         text += f"; {ModelWord.EQUIVALENT_DRIVE}" if steady is not scenes else ""
-        against = np.array([bool(reason) for reason in reasons])
-        status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
-        said = [
-            reason or (f"model error above the tolerance {tolerance:.1e}" if not far <= tolerance else "")
-            for reason, far in zip(reasons, error, strict=True)
-        ]
-        return Answers(
-            status=status,
-            reason=said,
-            model=["" if reason else text for reason in reasons],
-            error_kind=["" if reason else "estimated" for reason in reasons],
-            mean=np.where(against, np.nan, found.mean),
-            error=np.where(against, np.nan, error),
-            period=np.where(against, np.nan, float(scenes[0].periods)),
-            seconds=np.full(len(scenes), seconds),
-            orbit=lambda i: None if reasons[i] else _carried(scenes[i], found.orbit(i)),
-            balanced=False,
+        ledger = Ledger(len(scenes))
+        for i, reason in enumerate(reasons):
+            if reason:
+                ledger.fail(i, reason, "refused")
+                continue
+            ledger.accept(i, found.mean[i], error[i], float(scenes[0].periods))
+            ledger.model[i] = text
+            if not error[i] <= tolerance:
+                ledger.remark(i, f"model error above the tolerance {tolerance:.1e}")
+        ledger.seconds[:] = seconds
+        return ledger.answers(
+            orbit=lambda i: None if reasons[i] else _carried(scenes[i], found.orbit(i)), balanced=False
         )
 
 

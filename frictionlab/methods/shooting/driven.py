@@ -20,8 +20,8 @@ from frictionlab.methods.base import (
     TESTED,
     Answers,
     FoundState,
+    Ledger,
     Multipliers,
-    Status,
 )
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.follow import MOST, Attractor, DrivePeriods, closed_orbit, multiplier
@@ -100,7 +100,7 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
     return states.answers()
 
 
-class SteadyStates:
+class SteadyStates(Ledger):
     """The steady states of a curve, as far as they are known.
 
     spans: of all that changes in time, in the orbit of each. multipliers: NaN where nothing has asked for them.
@@ -112,20 +112,16 @@ class SteadyStates:
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
         n = len(scenes)
+        super().__init__(n)
         self.scenes, self.problem = Scenes.of(scenes), problem
         self.belt_speeds = self.scenes.belt_speeds
-        self.status: list[Status] = ["failed"] * n
-        self.reason = [""] * n
         self.states: list[Floats | None] = [None] * n
         self.reached = [0] * n
-        self.unique = [""] * n
         self.tried: dict[int, Trial] = {}
         self.followed: dict[int, FollowedStarts] = {}
         self.continua: dict[int, list[Floats]] = {}
         self.repelling: set[int] = set()
-        self.mean: Complexes = np.full(n, UNKNOWN)
-        self.error, self.low, self.high, self.window = np.full((4, n), np.nan)
-        self.period, self.multipliers, self.seconds = np.full((3, n), np.nan)
+        self.multipliers = np.full(n, np.nan)
         self.error_kind = ["estimated"] * n
         self.spans = np.ones(n, np.int64)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.zero, complex)
@@ -171,7 +167,7 @@ class SteadyStates:
             self.solved_by[i] = problem
             if not found[row]:
                 steps = "" if problem is self.problem else " of implicit steps"
-                self._add(i, f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}")
+                self.remark(i, f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}")
             elif remains and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, closed.mean[row], closed.mean[row])
             else:
@@ -200,7 +196,7 @@ class SteadyStates:
         """Keep an answer that no theorem makes unique only where starts far from it end there."""
         if self._may_hold(i) and (continuum := DrivePeriods(self.problem, self.scenes[i]).continuum()):
             means = [each.mean for each in continuum]
-            self._clear(i)
+            self.clear(i)
             self._leave_open(i, f"{HOLDS}: the mean depends on the start", min(means), max(means))
             self.continua[i] = [each.state for each in continuum]
         elif self.problem.goal.check_attraction and self._attracts(i):
@@ -231,18 +227,18 @@ class SteadyStates:
         resonant = math.isinf(velocity_scale(scene)) and not can_hold(scene, law)
         for i, error in enumerate(self.error):
             if resonant and self.status[i] == "failed":
-                self._add(i, UNBOUNDED)
+                self.remark(i, UNBOUNDED)
             periods = carried_for(self.scenes[i], self.problem.mass.normal_load * friction_at_rest(law))
             if periods > MOST and self.status[i] != "ok" and can_hold(scene, law):
-                self._add(i, CARRIED.format(periods * self.problem.common))
+                self.remark(i, CARRIED.format(periods * self.problem.common))
             statistical = self.status[i] == "ok" and self.error_kind[i] == STATISTICAL
             if statistical and not is_earned(error, law, tolerance):
                 said = f"{self.reason[i]}; {too_wide(self.mean[i].real, error)}"
-                self._clear(i)
+                self.clear(i)
                 self.reason[i] = said
             if self.status[i] == "ok" and not error <= tolerance and not statistical:
                 said = f"the error is above the tolerance {tolerance:.1e}"
-                self._add(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
+                self.remark(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
 
     def tell_uniqueness(self) -> None:
         """Say of answers that no other start was found to leave how that is known."""
@@ -251,11 +247,11 @@ class SteadyStates:
                 continue
             if i in self.tried:
                 self.unique[i] = TESTED
-                self._add(i, self.tried[i].sentence(self._known(i)))
+                self.remark(i, self.tried[i].sentence(self._known(i)))
             elif self.proof or (self.problem.goal.contracts and self.multipliers[i] < 1.0):
                 self.unique[i] = PROVED
 
-    def answers(self) -> Answers:
+    def answers(self, **others: Any) -> Answers:
         """As every method gives them."""
         ways = list(dict.fromkeys(self.solved_by))
         models = {(way, ""): _model(self.scenes.scene, self.problem, way) for way in ways}
@@ -263,24 +259,10 @@ class SteadyStates:
         theorem = damped if self.proof else ModelWord.NEIGHBOURS
         models |= {(way, PROVED): f"{models[way, '']}; {theorem}" for way in ways}
         proved = [PROVED if each == PROVED else "" for each in self.unique]
-        return Answers(
-            status=self.status,
-            reason=self.reason,
-            model=[models[each] for each in zip(self.solved_by, proved, strict=True)],
-            error_kind=[
-                kind if status == "ok" else ""
-                for kind, status in zip(self.error_kind, self.status, strict=True)
-            ],
-            mean=self.mean,
-            error=self.error,
-            period=self.period,
+        self.model = [models[each] for each in zip(self.solved_by, proved, strict=True)]
+        return super().answers(
             floquet=self._floquet,
             multipliers=lambda: self._multipliers,
-            mean_low=self.low,
-            mean_high=self.high,
-            window=self.window,
-            unique=self.unique,
-            seconds=self.seconds,
             orbit=self._orbit,
             orbits=None if STATISTICAL in self.error_kind else self._orbits,
             states=self._found_states,
@@ -412,7 +394,7 @@ class SteadyStates:
         problem, scene, followed = self.problem, self.scenes[i], self.followed[i]
         reached, unfinished = followed.ended, left_unfinished(followed.reached)
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
-        self._clear(i)
+        self.clear(i)
         if scene.initial is not None and followed.reached[0].lost:
             self.reason[i] = f"from scene.initial the motion runs away; {unfinished}"
             return
@@ -428,12 +410,12 @@ class SteadyStates:
         if not math.isnan(first.mean) and (unique or own):
             self._accept(i, first)
             if unfinished:
-                self._add(i, unfinished)
+                self.remark(i, unfinished)
                 self.unique[i] = NOT_UNIQUE if any(one.lost for one in followed.reached) else ""
             elif unique:
                 self.tried[i] = followed.trial
             if not unique:
-                self._add(i, f"reached from scene.initial; {describe(reached)}")
+                self.remark(i, f"reached from scene.initial; {describe(reached)}")
                 self.unique[i] = NOT_UNIQUE
             return
         ranges = [(one.low, one.high) if math.isnan(one.mean) else (one.mean, one.mean) for one in reached]
@@ -484,25 +466,18 @@ class SteadyStates:
         self.window[i] = found.followed * self.problem.common
         self.reason[i] = found.average.sentence(float(self.window[i]), DRIVEN)
 
-    def _add(self, i: int, said: str) -> None:
-        """To the reason."""
-        self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
-
     def _known(self, i: int) -> float:
         """The largest multiplier, where those of every degree of freedom are known."""
         return float(self.multipliers[i]) if self.whole else math.nan
 
-    def _clear(self, i: int) -> None:
-        self.status[i], self.reason[i], self.states[i] = "failed", "", None
-        self.mean[i] = UNKNOWN
-        self.spans[i], self.error_kind[i] = 1, "estimated"
-        for numbers in (self.error, self.low, self.high, self.window, self.period, self.multipliers):
-            numbers[i] = np.nan
+    def clear(self, i: int) -> None:
+        """Forget all that is known of an answer."""
+        super().clear(i)
+        self.states[i], self.spans[i], self.error_kind[i] = None, 1, "estimated"
+        self.multipliers[i] = math.nan
 
     def _leave_open(self, i: int, reason: str, low: float, high: float) -> None:
-        """No one mean, but a range of them."""
-        self.status[i], self.reason[i] = "not_unique", reason
-        self.low[i], self.high[i], self.window[i] = low, high, self.problem.common
+        self.leave_open(i, reason, low, high, self.problem.common)
 
     def _put(self, places: Any, curve: Curve, rows: Any) -> None:
         """Enter the numbers of these rows at these places."""

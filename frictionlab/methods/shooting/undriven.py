@@ -17,7 +17,7 @@ import numpy as np
 
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import STATISTICAL, Answers, Status
+from frictionlab.methods.base import STATISTICAL, Answers, Ledger
 from frictionlab.methods.periodic.attraction import KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
 from frictionlab.methods.periodic.leaps import Leaper
@@ -376,41 +376,26 @@ def means_of(passages: Sequence[Passage]) -> Floats:
 
 def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer undriven scenes, each by the state it reaches from its start."""
-    numbers = np.full((6, len(scenes)), np.nan)
-    mean, error, period, window, multipliers, seconds = numbers
-    status: list[Status] = ["failed"] * len(scenes)
-    reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
+    ledger, multipliers = Ledger(len(scenes)), np.full(len(scenes), np.nan)
     found: dict[int, tuple[Undriven, PeriodicMotion]] = {}
     for i, scene in enumerate(each_told(scenes)):
         undriven = Undriven(scene, law, tolerance)
-        motion, seconds[i] = once(undriven.motion_or_why_not, scene.belt_speed)
+        motion, ledger.seconds[i] = once(undriven.motion_or_why_not, scene.belt_speed)
         if isinstance(motion, str):
-            reason[i] = motion
+            ledger.fail(i, motion)
             continue
-        if motion.long is not None and not is_earned(motion.error, law, tolerance):
-            said = motion.long.sentence(motion.turns, FREE)
-            reason[i] = f"{said}; {too_wide(motion.mean, motion.error)}"
+        long, said = motion.long, motion.long.sentence(motion.turns, FREE) if motion.long else ""
+        if long is not None and not is_earned(motion.error, law, tolerance):
+            ledger.fail(i, f"{said}; {too_wide(motion.mean, motion.error)}")
             continue
         found[i] = undriven, motion
-        status[i], model[i], kind[i] = "ok", motion.kind, "estimated"
-        mean[i], error[i] = motion.mean, motion.error
-        period[i] = math.nan if motion.long else motion.period / TURN
-        multipliers[i] = motion.multiplier
-        if motion.long is not None:
-            kind[i], window[i] = STATISTICAL, motion.turns
-            reason[i] = motion.long.sentence(motion.turns, FREE)
+        ledger.accept(i, motion.mean, motion.error, math.nan if long else motion.period / TURN)
+        ledger.model[i], ledger.reason[i], multipliers[i] = motion.kind, said, motion.multiplier
+        if long is not None:
+            ledger.error_kind[i], ledger.window[i] = STATISTICAL, motion.turns
         elif not motion.error <= tolerance:
-            reason[i] = f"the error is above the tolerance {tolerance:.1e}"
-    return Answers(
-        status=status,
-        reason=reason,
-        model=model,
-        error_kind=kind,
-        mean=mean,
-        error=error,
-        period=period,
-        window=window,
+            ledger.remark(i, f"the error is above the tolerance {tolerance:.1e}")
+    return ledger.answers(
         floquet=lambda: multipliers,
-        seconds=seconds,
         orbit=lambda i: found[i][0].orbit(found[i][1]) if i in found else None,
     )

@@ -251,7 +251,6 @@ def _slopes_at(body: BodyNumbers, x: Any, v: Any) -> Any:
     return slopes_at(body, x, v)
 
 
-_acceleration_under = as_argument(acceleration_under)
 _smooth_step = dop853.stepper(_smooth_rates)
 
 

@@ -50,13 +50,12 @@ class MarchState(NamedTuple):
 
 
 class LapsMarched(NamedTuple):
-    """Laps of a motion: states [laps + 1], friction impulses, times at rest, durations and gaps [laps]."""
+    """Laps of a motion: states [laps + 1], friction impulses, durations and gaps [laps]."""
 
     x: Any
     v: Any
     z: Any  # [laps + 1, memories]
     impulse: Any
-    stuck: Any
     duration: Any
     gaps: Any  # to the state ``stride`` laps earlier, in the energy norm
 
@@ -136,7 +135,6 @@ def laps_of(settings: MarchSettings) -> LapsMarched:
         np.empty(most + 1, np.complex128),
         np.empty((most + 1, settings.spring.size), np.complex128),
         np.empty(most, np.complex128),
-        np.empty(most),
         np.empty(most),
         np.empty(most),
     )
@@ -285,16 +283,12 @@ def march_laps(
         lap = march_lap(problem, settings, StepStart(0, 0.0, x, v), step, track)
         n = progress.laps
         keep_state(laps, n + 1, lap.x, lap.v, problem)
-        laps.impulse[n], laps.stuck[n], laps.duration[n] = (
-            lap.tally.impulse + 0j,
-            lap.tally.stuck,
-            lap.duration,
-        )
+        laps.impulse[n], laps.duration[n] = lap.tally.impulse + 0j, lap.duration
         progress = progress_after(progress, body, settings, laps, lap)
         trace, x, v, step = lap.trace, lap.x + path_stuck(law, body, settings, lap), lap.v, lap.step
     n = progress.laps
     marched = LapsMarched(
-        laps.x[: n + 1], laps.v[: n + 1], laps.z[: n + 1], laps.impulse[:n], laps.stuck[:n], laps.duration[:n],
+        laps.x[: n + 1], laps.v[: n + 1], laps.z[: n + 1], laps.impulse[:n], laps.duration[:n],
         laps.gaps[:n],
     )  # fmt: skip
     # The grid is named once more, for numba lets go of an array after its last use.

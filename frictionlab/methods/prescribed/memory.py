@@ -7,10 +7,11 @@ from typing import Any, cast
 
 import numpy as np
 
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import Follow, KnownOrbit, corners, unknown_orbit
+from frictionlab.methods.periodic.attraction import Follow, KnownOrbit, corners, unknown_orbit, write_start
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, answer_curve
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, Goal
 from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit
@@ -50,6 +51,12 @@ class PrescribedPeriods(PeriodicProblem):
         self.size = interpreted(size_of)(self.law, self.zero)
         self.kind = map_kind(self.law, isinstance(self.zero, complex))
 
+    def deflected(self, deflection: float) -> Floats:
+        """Return the state with a deflection along x1 in the middle of an oscillation."""
+        bent, state = deflection - self.mass.velocity.real / self.mass.frequency, np.empty(self.size)
+        KernelCall(write_start)(self.maps, (0j, 0j, complex(bent)), state)
+        return state
+
     def carried(
         self, belt_speed: float, state: Floats, most: int, known: KnownOrbit | None = None
     ) -> Transient:
@@ -83,6 +90,8 @@ class MemoryPoint:
         elif room > 0.0:
             ends = abs(self.law.friction(0.0, room, 0.0))
             self.found = self._left_open([-ends, ends], WITHIN)
+            if scene.load_along_belt_only:
+                self.reached = [self.problem.deflected(each) for each in (-room, room, 0.0)]
         else:
             self.found = self._answer()
 

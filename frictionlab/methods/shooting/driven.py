@@ -58,7 +58,6 @@ from frictionlab.values.quantities import Floats
 
 Complexes = NDArray[np.complex128]
 
-UNKNOWN = complex(math.nan, math.nan)
 READ_OVER = 512
 """Periods of a motion that does not repeat over which columns other than the mean are read."""
 SURELY = 1e-6

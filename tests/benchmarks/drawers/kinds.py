@@ -11,7 +11,6 @@ OUTSIDE = {
     "varying": "waveforms, vibrating belts, changing normal loads by exact (tests/varying_scenes.py)",
     "every_kind": "every kind of scene and law by auto at 1e-8 (tests/draws_of_every_kind.py)",
     "convergent": "scenes of theorem T1 from three starts: one answer, which auto's error covers",
-    "marched": "every kind of scene and law, marched, against shooting or, where that refuses, as the others",
     "near_rest": "planar scenes that are hard near rest, by shooting (tests/random_scenes.py)",
 }
 """Campaigns against tests/outside_state.py: a constant of ``outside.py``, in capitals -> what it is about."""

@@ -6,16 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import random_scenes
-from campaign import WRONG, Campaign, Drawn, Keys, Unknown, Verdicts, covered, law_of, sound
+from campaign import WRONG, Campaign, Drawn, Keys, Unknown, Verdicts, covered, sound
 from draws_of_every_kind import Numpy, convergent_scene, scene_of_every_kind
 from outside_state import Outside, Unsettled, steady
 from varying_scenes import draw_varying
 
 import frictionlab as fl
-from frictionlab.methods.march.steppers import steppers_of
-
-STEPS = 200
-"""Per period, of a marched scene; of rk4 twice as many."""
 
 
 def followed(
@@ -63,30 +59,6 @@ def every_kind(rng: np.random.Generator) -> Drawn:
     return Drawn(law["kind"], scene, law)
 
 
-def marched(rng: np.random.Generator) -> Drawn:
-    """The same with a stepper of its law."""
-    source = Numpy(rng)
-    scene, law = scene_of_every_kind(source)
-    stepper = source.among(steppers_of(law_of(law).memory_kind))
-    method = fl.March(stepper=stepper)
-    if stepper != "smoothed":
-        own = fl.March(stepper=stepper, steps=STEPS * (2 if stepper == "rk4" else 1))
-        stable = "steps per period" not in (own.refusal(fl.Scene(**scene), law_of(law)) or "")
-        method = own if stable else method
-    return Drawn(f"{stepper}, {law['kind']}", scene, law, 1e-3, method)
-
-
-def by_shooting(one: Drawn, state: fl.SteadyState) -> tuple[float, float]:
-    """The mean and its error; what shooting refuses (a contact of constant stiffness) is followed."""
-    other = fl.steady_state(*one.made(), method="shooting", tolerance=1e-7)
-    if other.status == "ok":
-        return other.mean_friction, other.error
-    if other.status != "refused":
-        raise Unknown(f"shooting: {other.status}")
-    found = followed(one)
-    return found.mean, 10.0 * found.error + 1e-9
-
-
 def convergent(rng: np.random.Generator) -> Drawn:
     """A scene that theorem T1 holds for."""
     scene, law = convergent_scene(Numpy(rng))
@@ -121,4 +93,3 @@ VARYING = Campaign(on_the_line(draw_varying), sound, COVERED, scenes=10_000, com
 EVERY_KIND = Campaign(every_kind, sound, COVERED, scenes=3000, compared=100)
 NEAR_REST = Campaign(near_rest, sound, COVERED, scenes=300)
 CONVERGENT = Campaign(convergent, sound, from_three_starts, scenes=1000, compared=1000)
-MARCHED = Campaign(marched, sound, covered(by_shooting), scenes=300, compared=300)

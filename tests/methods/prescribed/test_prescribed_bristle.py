@@ -355,6 +355,16 @@ def test_slip_within_the_elastic_range_on_a_belt_at_rest_leaves_the_mean_to_the_
     assert math.isnan(answers.columns["mean_friction"][0])
 
 
+@pytest.mark.parametrize("phase", [0.0, 40.0, 90.0])
+def test_heat_of_an_elastic_contact_is_that_of_its_damping_whatever_the_mean(phase):
+    one = Scene(belt_speed=0.0, slip=Slip(velocity_amplitude=1.0, frequency=1.0, phase=phase))
+    answers = answer(one, elasto_plastic(4.0, breakaway_ratio=0.5, damping=0.1))
+
+    assert answers.status == ["not_unique"]
+    assert answers.columns["energy_contact"][0] == pytest.approx(0.1 * math.pi, abs=1e-8)
+    assert answers.columns["velocity_amplitude"][0] == pytest.approx(1.0, abs=1e-12)
+
+
 def test_a_belt_at_rest_drags_nothing_else():
     for scene in (slip(0.0), transverse(0.0), circular(0.0)):
         assert mean(scene, dahl(0.3)) == 0.0

@@ -48,8 +48,8 @@ class Attractor:
     periods for which the motion was followed. low, high: smallest and largest mean over one drive period.
     points [n, size]: states at the starts of the periods of a closed orbit, or at the last ones of another
     motion. average: mean over a long time of all motions on one attractor that never repeat; None if it has
-    not been computed. neutral: True for a motion that repeats, like others near it, because it has no
-    damping. stopped: True if following stopped after too many steps. lost: True if it stopped because the
+    not been computed. neutral: True for a motion that repeats, like others near it, because nothing damps it or
+    a contact holds it. stopped: True if following stopped before the end. lost: True if it stopped because the
     motion runs away.
     """
 

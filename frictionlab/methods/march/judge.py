@@ -13,6 +13,8 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
+import numpy as np
+
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import PROVED, Answers, Ledger, Status
 from frictionlab.methods.march.laps import CLOSED, LATE, RESTING, STALLED, TIRED, TOO_FAST, TOO_STIFF
@@ -21,6 +23,7 @@ from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.steppers import MARGIN, Resolution, StepperName
 from frictionlab.motion.orbit.read import read_columns
 from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import NODES
 from frictionlab.scene.scene import Scene
 
 COARSEST = 64
@@ -234,11 +237,16 @@ class MarchedPoint:
         alike = run.high - run.low <= max(error, self.tolerance)
         own = round(laps) if math.isfinite(laps) else 1 if alike else run.stride
         self.orbit = partial(self._orbit, runs.readable, run.stride if self.scene.undriven else own)
-        ledger.accept(i, run.mean, error, self._period(run, own))
+        if self.scene.undriven and self._is_still(run):
+            self.orbit, own = partial(self._at_one_place, run), 0
+        repeats = own > 0 and (self.scene.undriven or math.isfinite(laps))
+        period = run.period / (2.0 * math.pi) if self.scene.undriven else self.march.periods * own
+        ledger.accept(i, run.mean, error, period if repeats else math.nan)
+        ledger.window[i] = self.full.window
         ledger.unique[i] = self.full.unique if self.full.unique != PROVED else ""
         theta = f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
         ledger.model[i] = f"march, {self.plan.stepper}{theta}: {self._pace(run)}"
-        if run.verdict == STALLED:
+        if run.verdict == STALLED and repeats:
             averaged = self.march.window * self.march.periods
             ledger.remark(i, APERIODIC.format(averaged))
         if not error <= self.tolerance:
@@ -262,12 +270,17 @@ class MarchedPoint:
             return f"{reason}: about {fewest_said} are enough; or use method shooting", "refused"
         return reason, "failed"
 
-    def _period(self, run: MarchResult, own: int) -> float:
-        if not self.scene.undriven:
-            return self.march.periods * own
+    def _is_still(self, run: MarchResult) -> bool:
+        """Check that an undriven mass has come to slide steadily, or to rest."""
         swing = read_columns([self.scene], lambda i: self.orbit())["velocity_amplitude"][0]
-        still = swing <= 2.0 * run.pace.enough
-        return math.nan if run.verdict == RESTING or still else run.period / (2.0 * math.pi)
+        return run.verdict == RESTING or bool(swing <= 2.0 * run.pace.enough)
+
+    def _at_one_place(self, run: MarchResult) -> Orbit:
+        """Return the orbit of a mass that keeps its place, over a time of 2 pi."""
+        whole, rests = np.ones((1, NODES.size), np.complex128), np.array([run.verdict == RESTING])
+        tau = math.pi * (NODES[None, :] + 1.0)
+        orbit = Orbit(tau, run.place.x * whole, 0.0 * whole, -run.mean * whole, rests)
+        return orbit if self.march.facts.sticks else replace(orbit, stick=None)
 
     def _orbit(self, run: MarchResult, own: int) -> Orbit:
         """Return the orbit of a run whose response takes ``own`` laps; of more if steps keep it from repeating."""

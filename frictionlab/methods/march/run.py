@@ -115,7 +115,7 @@ class MarchRun:
         stride = _stride(march) if march.progress.verdict == STALLED else 1
         if stride > 1:
             longer = self._marched(pace, self._way(pace)._replace(stride=stride, rate=0.0), run.place)
-            other = self._read(longer, pace, self._least(longer, stride, 2.0 * pace.enough))
+            other = self._read(longer, pace, stride)
             run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
         return run
 
@@ -123,8 +123,6 @@ class MarchRun:
         """So many laps, from the end of a run that settled."""
         room = 2 * laps * (run.steps // run.laps + 50)
         way = self._way(run.pace)._replace(most=laps, stride=laps + 1, room=room)
-        if run.verdict == RESTING:
-            way = way._replace(span=2.0 * math.pi)
         march = self._marched(run.pace, way, run.place)
         track, n = march.track, int(march.track.filled[0])
         tau = track.tau[:n] + _offsets(track.tau[:n])[:, None]
@@ -205,12 +203,6 @@ class MarchRun:
             drift=drift,
             met=float(march.trace.met),
         )
-
-    def _least(self, march: MarchHistory, stride: int, within: float) -> int:
-        """The fewest laps after which a motion known to repeat after ``stride`` laps has repeated already."""
-        last = len(march.laps.impulse)
-        whole = [laps for laps in range(1, stride) if stride % laps == 0]
-        return next((laps for laps in whole if self._apart(march, last, last - laps) <= within), stride)
 
     def _apart(self, march: MarchHistory, a: int, b: int) -> float:
         b = max(b, 0)

@@ -248,12 +248,12 @@ def iterate_until_periodic(
             states[n + 1, row] = states[n, row] + many * residual[row]
         passed[n + 1] = passed[n] + many
         if slides_on and ends_in_sliding(setting, states[n + 1]):
-            return 1, n + 1
+            return 1, n + 1, steps
         subtract(states[n + 1], orbit.state, after)
         far = norm(before) if obeyed == 0 else far
         obeyed = obeyed + 1 if many == 1.0 and obeys(orbit, before, after, predicted) else 0
         if (obeyed >= ENOUGH and norm(after) < FALLEN * far) or norm(after) < near:
-            return ARRIVED, n + 1
+            return ARRIVED, n + 1, steps
         copy(after, before)
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
@@ -261,8 +261,8 @@ def iterate_until_periodic(
             repeats = max(_apart(states, n + 1, n + 1 - k, least), _apart(states, n, n - k, least)) < alike
             # A spiral into an orbit of fewer periods looks like a longer one while it is still far out.
             if repeats and nearest > 1e-4:
-                return int(passed[n + 1] - passed[n + 1 - k]), n + 1
+                return int(passed[n + 1] - passed[n + 1 - k]), n + 1, steps
             nearest = min(nearest, _apart(states, n + 1, n + 1 - k, least))
         if image.steps < 0 or steps > MUCH_WORK:
-            return 0, n + 1
-    return 0, means.size
+            return 0, n + 1, steps
+    return 0, means.size, steps

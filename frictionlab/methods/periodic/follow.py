@@ -14,12 +14,10 @@ from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS, Curve
 from frictionlab.methods.periodic.leaps import Leaper
 from frictionlab.methods.periodic.long_mean import LongMean
 from frictionlab.methods.periodic.period_map import MAP_KINDS
-from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, largest_modulus
+from frictionlab.methods.periodic.problem import GAP, PeriodicProblem, Transient, largest_modulus
 from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import Floats
 
-STABLE = 1.0 - 1e-7
-"""Largest Floquet multiplier of an orbit that counts as attractive."""
 NO_GROWTH = 1e-6
 """Largest difference from one that rounding gives a multiplier."""
 NEARLY_REPEATED = 1e-3
@@ -102,14 +100,17 @@ def multiplier(curve: Curve, row: int = 0) -> float:
     return float(largest_modulus(curve.matrices[row : row + 1])[0])
 
 
-def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> Attractor | None:
+def closed_orbit(
+    curve: Curve, means: Floats, points: Floats | None = None, gap: float = GAP
+) -> Attractor | None:
     """Return a closed orbit with its means over each drive period and its states there.
 
-    Return None if the orbit did not close, or if it repels.
+    Return None if the orbit did not close, or if it repels. gap: least difference to one of the multipliers of
+    an orbit that attracts.
     """
     # if slip never reverses, bristles may near their limit as a power of the path: multipliers are then one
     maps = curve.closed.maps[0]
-    if maps < 0.0 or (maps > 0.0 and not multiplier(curve) < STABLE):
+    if maps < 0.0 or (maps > 0.0 and not multiplier(curve) < 1.0 - gap):
         return None
     points = curve.states if points is None else points
     return Attractor(0, len(means), float(means.min()), float(means.max()), curve, points)
@@ -152,6 +153,10 @@ class DrivePeriods:
         curve, _ = problem.called(speeds, state[None].copy(), problem.goal, MULTIPLIERS)
         matrix: Floats = curve.matrices[0]
         return matrix
+
+    def stays(self, state: Floats) -> bool:
+        """Check that a map changes a state by no more than its error."""
+        return bool(np.linalg.norm(self.mapped(state[None])[0] - state) <= 100.0 * self.noise)
 
     def held(self, state: Floats) -> Held | None:
         """Return where the motion from a state ends, by true maps and then by Newton's; None if there is none.
@@ -229,6 +234,7 @@ class Follower:
         way = self._problem.carried(self._scene.belt_speed, state, asked, first.known if first else None)
         while (end := self._end_of(way, first)) is None and self._may_go_on(way, asked):
             leaper.state, before, asked = way.state, leaper.periods, len(way.means)
+            leaper.price = way.steps / asked
             end = self._leapt(leaper)
             if end is not None:
                 break
@@ -268,7 +274,10 @@ class Follower:
             if not any(found.agrees(one) for one in self.known):
                 self.known = [*self.known, found]
         away = float(np.linalg.norm(found.points - way.state, axis=1).min())
-        return found if away <= NEARLY_REPEATED * float(np.linalg.norm(way.state)) else None
+        if away <= NEARLY_REPEATED * float(np.linalg.norm(way.state)):
+            return found
+        stays = self._problem.undamped and DrivePeriods(self._problem, self._scene).stays(way.state)
+        return kept(way) if stays else None
 
     def _leapt(self, leaper: Leaper) -> Attractor | None:
         """Return the closed one-period orbit to which leaps lead, or None."""
@@ -286,9 +295,17 @@ class Follower:
         """Add the closed orbit of one period beside a state to those known."""
         curve, seconds = self._problem.close([self._scene], state)
         self.seconds += seconds
-        found = closed_orbit(curve, curve.closed.mean) if curve.closed.found[0] else None
+        mean, gap = curve.closed.mean, self._problem.gap
+        found = closed_orbit(curve, mean, gap=gap) if curve.closed.found[0] else None
         if found is not None and not any(found.agrees(one) for one in self.known):
             self.known = [*self.known, found]
+
+
+def kept(way: Transient) -> Attractor:
+    """Return the motion that repeats, like others near it; closing may lead along the neutral ways."""
+    last = way.means[-way.period :]
+    ends = float(last.min()), float(last.max())
+    return Attractor(len(way.means), 0, *ends, None, way.states[-way.period :], neutral=True)
 
 
 def orbit_at_the_end(
@@ -301,13 +318,12 @@ def orbit_at_the_end(
     seconds, followed = 0.0, len(way.means)
     if way.period > 0:
         curve, means, points, seconds = _shortest(problem, scene, way)
-        orbit = closed_orbit(curve, means, points)
+        orbit = closed_orbit(curve, means, points, problem.gap)
         if orbit is not None:
             return orbit, seconds
-        if curve.closed.found[0] and problem.undamped and multiplier(curve) < 1.0 + NO_GROWTH:
-            last = way.means[-way.period :]  # closing may have led along the neutral ways
-            ends = float(last.min()), float(last.max())
-            return Attractor(followed, 0, *ends, None, way.states[-way.period :], neutral=True), seconds
+        beside = bool(curve.closed.found[0]) and multiplier(curve) < 1.0 + NO_GROWTH
+        if problem.undamped and (beside or DrivePeriods(problem, scene).stays(way.state)):
+            return kept(way), seconds
     last = way.means[followed // 2 :]
     low, high = float(last.min()), float(last.max())
     stopped = way.period == 0 and (followed < FEWEST or problem.free_period > LONGEST_FREE_PERIOD)

@@ -24,6 +24,8 @@ from frictionlab.values.quantities import Floats
 
 FEW_MAPS, MOST_MAPS, PAYS = 2000, 5000, 5
 """Numbers of true maps after which no further leap is tried: MOST_MAPS if each has led over PAYS periods."""
+MOST_STEPS = 5_000_000
+"""Number of steps in all maps after which no further leap is tried."""
 SHARE, FLOOR = 0.02, 1e-9
 """Largest error of a leap: SHARE of the distance that it leads, plus FLOOR of the size of the state."""
 ON_THE_WAY = (0.11, 0.3, 0.62, 0.83)
@@ -36,6 +38,8 @@ OBEYED = 0.1
 """Largest error of the affine map there, over the change by a map."""
 
 
+FARTHEST = 3.0
+"""Largest distance of a leap, over the largest size of the motion so far: farther out maps cost millions of steps."""
 LONGEST = 1_000_000_000
 """Largest number of maps of one leap."""
 CLOSED_FROM = 0.05
@@ -64,13 +68,14 @@ class Leaper:
     """Motion that is led on by leaps.
 
     state: state reached so far. periods: maps passed so far. maps: true maps made so far, including those for
-    derivatives.
+    derivatives. price: steps that a map takes.
     """
 
     section: Section
     state: Floats
     periods: int = 0
     maps: int = 0
+    price: float = 0.0
 
     def __post_init__(self) -> None:
         self._length = 2 * self.fewest
@@ -102,8 +107,9 @@ class Leaper:
         return self.state.size + 3
 
     @property
-    def _most(self) -> int:
-        return MOST_MAPS if self.periods > PAYS * self.maps else FEW_MAPS
+    def _most(self) -> float:
+        most = MOST_MAPS if self.periods > PAYS * self.maps else FEW_MAPS
+        return min(most, MOST_STEPS / max(self.price, 1.0))
 
     def leap(self) -> Floats | None:
         """Lead the motion on by one leap.
@@ -114,6 +120,9 @@ class Leaper:
         matrix = self._derivative()
         length = self._within_growth(matrix)
         while length >= self.fewest and np.isfinite(matrix).all() and self.maps < self._most:
+            if not np.linalg.norm(power_sum(matrix, length)[1] @ base) <= FARTHEST * self._size:
+                length //= 2
+                continue
             moved, error, defect = self._tried(matrix, base, length)
             allowed = SHARE * float(np.linalg.norm(moved)) + FLOOR * self._size
             ratio = error / allowed if math.isfinite(error) else math.inf

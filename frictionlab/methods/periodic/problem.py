@@ -50,7 +50,7 @@ from frictionlab.methods.under_way import once
 from frictionlab.motion.equation import runs_away, swing_of
 from frictionlab.motion.orbit.record import Orbits
 from frictionlab.motion.orbit.recorder import WEIGHTS, Track, track_of
-from frictionlab.scene.body import BodyNumbers, for_kernels, in_the_plane, on_the_line
+from frictionlab.scene.body import BodyNumbers, Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
@@ -86,6 +86,16 @@ def undamped(scene: Scene) -> bool:
     return not damps or (scene.transverse is not None and mass.transverse_damping == 0.0)
 
 
+def _least_gap(mass: Mass, common: float) -> float:
+    """Return the least difference to one of a multiplier that shows attraction: less than usual if dashpots do less.
+
+    Multipliers of laws with memory are quotients, which do not tell less than the usual.
+    """
+    weakest = min(mass.damping, mass.transverse_damping or mass.damping)
+    lost = -math.expm1(-math.pi * weakest / mass.frequency * common)
+    return min(GAP, 0.3 * lost) if lost > 0.0 else GAP
+
+
 def _with_free_state(scene: Scene, law: Any, body: BodyNumbers) -> BodyNumbers:
     """Return a body that several waves drive along the line, with its motion without friction.
 
@@ -116,13 +126,18 @@ class Transient(NamedTuple):
     states: Floats
     state: Floats
     seconds: float
+    steps: int = 0
 
     def then(self, later: Transient) -> Transient:
         """Join the motion that goes on from the end of this one."""
         means, states = np.concatenate([self.means, later.means]), np.concatenate([self.states, later.states])
-        return Transient(later.period, means, states, later.state, self.seconds + later.seconds)
+        return Transient(
+            later.period, means, states, later.state, self.seconds + later.seconds, self.steps + later.steps
+        )
 
 
+GAP = 1e-7
+"""Least difference to one of the Floquet multipliers of an orbit that counts as attractive."""
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""
 SHIFT = 1e-5
@@ -153,6 +168,7 @@ class PeriodicProblem:
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.undamped = undamped(scene)
+        self.gap = _least_gap(self.mass, self.common) if law.count() == 0 else GAP
         self.body = self.body._replace(periods=self.common)
         constant = (
             not (self.body.bends or isinstance(self.zero, complex))
@@ -380,8 +396,8 @@ class PeriodicProblem:
             means, states = np.empty(most), np.empty((most + 1, self.size))
             states[0] = state
             arguments = float(belt_speed), self.common, how, known, Trail(means, states)
-            (period, count), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
-            way = Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
+            (period, count, steps), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
+            way = Transient(period, means[:count], states[1 : count + 1], states[count], seconds, steps)
             return way, seconds
 
         return once(followed, "follow", self.law, self.body, belt_speed, state, most, how, known)[0]

@@ -16,7 +16,7 @@ from frictionlab.methods.periodic.continuation import DIFFERENTIATED, answer_cur
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, Goal
 from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit
 from frictionlab.methods.periodic.period_map import map_kind, size_of
-from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
+from frictionlab.methods.periodic.problem import GAP, PeriodicProblem, Transient
 from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
@@ -32,9 +32,10 @@ PERIODS = 400
 """Largest number of periods for which a memory is followed plainly from each start."""
 FINE, SAME_MEAN = 1e-9, 1e-6
 """Accuracy of maps with which starts are followed, over the normal load, and largest range of equal means."""
+ENDED = "ended here, with no memory and with that of steady sliding"
 HOLDS = "a deflection keeps what it began with, for ever or for thousands of periods"
+NO_END = "no steady state found: the memory does not repeat within {} periods"
 WITHIN = "the slip stays within the elastic range of the contact"
-WANDERS = "the memory does not converge from different starts"
 
 
 class PrescribedPeriods(PeriodicProblem):
@@ -45,7 +46,7 @@ class PrescribedPeriods(PeriodicProblem):
         self.law, self.kernel = law.under_load(self.mass.normal_load), answer_curve
         self.zero = 0.0 if scene.load_along_belt_only else 0j
         self.body = driven(self.mass, self.zero)
-        self.common, self.undamped = self.body.periods, True
+        self.common, self.undamped, self.gap = self.body.periods, True, GAP
         self.maps = table_of_maps(self.law, self.body)
         self.goal = Goal(tolerance, False, False, False, MUCH_WORK)
         self.size = interpreted(size_of)(self.law, self.zero)
@@ -117,14 +118,21 @@ class MemoryPoint:
         curve, seconds = problem.close([scene], np.zeros(problem.size), wanted=DIFFERENTIATED)
         found = closed_orbit(curve, curve.closed.mean) if curve.closed.found[0] else None
         follower = Follower(problem, scene, found, PERIODS)
-        ends = [follower.led(start)[0] for start in self._starts()]
+        ends = list[Attractor]()
+        for start in self._starts():
+            ends.append(follower.led(start)[0])
+            if ends[-1].curve is None and not ends[-1].neutral:
+                break
         self.seconds = seconds + follower.seconds
-        first = ends[0]
+        first, last = ends[0], ends[-1]
+        if last.curve is None and not last.neutral:
+            self.status, self.error_kind, self.reason = "failed", "", NO_END.format(last.followed)
+            return PrescribedMean()
         mirrored = self._is_mirrored and abs(first.mean) > max(first.error, SAME_MEAN)
         if first.curve is None or mirrored or not all(first.agrees(one) for one in ends):
             return self._without_one(ends)
         curve, self.state = first.curve, first.points[0]
-        self.tested = f"tested: {len(ends)} starts ended here, with no memory and with that of steady sliding"
+        self.tested = f"tested: {len(ends)} starts {ENDED}"
         closed = curve.closed
         if self._is_mirrored and self.law.memory_kind == "bristle":
             self.model, self.error_kind = str(ModelWord.SYMMETRY), "guaranteed"
@@ -147,7 +155,7 @@ class MemoryPoint:
         return found if belt == 0.0 and self.law.memory_kind != "scalars" else [found[0], found[-1]]
 
     def _without_one(self, ends: list[Attractor]) -> PrescribedMean:
-        """Return the range of means of starts that end apart."""
+        """Return the range of means of starts that end apart, or hold what they began with."""
         section = DrivePeriods(self.problem, self.scene)
         held = [section.held(one.points[-1]) if one.neutral else None for one in ends]
         pairs = list(zip(ends, held, strict=True))
@@ -156,7 +164,14 @@ class MemoryPoint:
             each for one, state in pairs for each in ((one.low, one.high) if state is None else (state.mean,))
         ]
         means += [-mean for mean in means] if self._is_mirrored else []
-        return self._left_open(means, WANDERS if self.law.memory_kind == "scalars" else HOLDS)
+        spread = max(means) - min(means)
+        if spread > SAME_MEAN:
+            return self._left_open(means, HOLDS)
+        # closing may fail beside a corner of the map, to which starts far apart come all the same
+        self.state, self.tested = self.reached[0], f"tested: {len(ends)} starts {ENDED}"
+        follow, speed = self.problem.followed_on, self.scene.belt_speed
+        fine, coarse = (follow(speed, self.state, 1, each).means[0] for each in (1e-11, 1e-9))
+        return PrescribedMean(complex(fine), float(spread + 2.0 * abs(coarse - fine) + FINE))
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
         self.status, self.error_kind = "not_unique", ""

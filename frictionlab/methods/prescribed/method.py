@@ -142,6 +142,8 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
             ledger.model[i], ledger.reason[i], ledger.unique[i] = row.model, row.reason, unique
             if found.error > tolerance:
                 ledger.remark(i, f"error {found.error:.1e} above the tolerance: only rounding errors remain")
+        elif row.status == "failed":
+            ledger.fail(i, row.reason)
         else:
             ledger.leave_open(i, row.reason, found.low, found.high, 1.0)
             ledger.model[i] = row.model

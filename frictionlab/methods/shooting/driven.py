@@ -359,7 +359,7 @@ class SteadyStates(Ledger):
         problem, scene, known = self.problem, self.scenes[i], None
         if self.states[i] is not None:
             curve, _ = problem.close([scene], self.states[i])
-            known = closed_orbit(curve, curve.closed.mean)
+            known = closed_orbit(curve, curve.closed.mean, gap=problem.gap)
             if curve.closed.found[0] and multiplier(curve) > 1.0 + SURELY:
                 self.repelling.add(i)
         self.followed[i] = followed = follow_all(problem, scene, known)

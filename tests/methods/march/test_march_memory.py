@@ -57,21 +57,6 @@ def test_one_element_is_marched_to_the_mean_of_jenkins_friction(belt_speed):
 
 
 @deep("more kernels to compile")
-def test_march_and_shooting_agree_about_three_elements():
-    scene = driven(1.0)
-
-    assert agree(solve(March(), scene, THREE, 1e-4), solve(Shooting(), scene, THREE, 1e-6))
-
-
-@compiling
-@pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"b": 0.015})], ids=["rising", "falling"])
-def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
-    scene = driven(20.0)
-
-    assert agree(solve(March(), scene, law, 1e-6), solve(Shooting(), scene, law, 1e-8))
-
-
-@deep("more kernels to compile")
 def test_where_slip_comes_to_rest_an_age_is_refused_by_march_and_left_to_shooting():
     answers = with_columns(March(), [driven(5.0)], AGEING, 1e-3)
 

@@ -26,7 +26,7 @@ from frictionlab.motion.orbit.record import Orbit
 from frictionlab.motion.orbit.recorder import NODES
 from frictionlab.scene.scene import Scene
 
-COARSEST = 64
+FIRST_STEPS = 64
 """Steps per period to begin with, where ``steps`` is left out."""
 MOST_WORK, MOST_ADAPTIVE = 500_000_000, 10_000_000
 """Steps of one run, where they are given, and where they are adaptive."""
@@ -35,7 +35,7 @@ READABLE = 4096
 ROUNDING = 1e-13
 """Rounding error of the mean coefficient from summing the impulses of a period, and a thousandth of it per step."""
 APERIODIC = "rounding to time steps makes the motion aperiodic: averaged over {:.0f} periods"
-NOT_KNOWN = "how far off time steps are is not known, for no other method tells the mean: "
+NO_FULL_ANSWER = "how far off time steps are is not known, for no other method tells the mean: "
 
 
 class Plan(NamedTuple):
@@ -133,7 +133,7 @@ class Runs:
     def _by_halving(self) -> None:
         """Halve the step until the mean is near enough or the work is done."""
         # what the motion asks for, and what the stepper needs not to explode
-        steps, work = max(COARSEST * self._slowness(), self.march.fewest()), 0
+        steps, work = max(FIRST_STEPS * self._slowness(), self.march.fewest()), 0
         while True:
             self._run(self._steps(steps, WORK - work))
             run = self.all[-1]
@@ -223,7 +223,7 @@ class MarchedPoint:
             ledger.leave_open(i, full.reason, full.low, full.high, full.window)
             ledger.unique[i] = full.unique
         else:
-            ledger.fail(i, NOT_KNOWN + full.reason, full.status)
+            ledger.fail(i, NO_FULL_ANSWER + full.reason, full.status)
         ledger.seconds[i] = self.march.seconds
 
     def _judge(self, runs: Runs, ledger: Ledger, i: int) -> None:

@@ -14,7 +14,7 @@ from frictionlab.methods.periodic.continuation import FINE, MULTIPLIERS, Curve
 from frictionlab.methods.periodic.leaps import Leaper
 from frictionlab.methods.periodic.long_mean import LongMean
 from frictionlab.methods.periodic.period_map import MAP_KINDS
-from frictionlab.methods.periodic.problem import GAP, PeriodicProblem, Transient, largest_modulus
+from frictionlab.methods.periodic.problem import LEAST_GAP, PeriodicProblem, Transient, largest_modulus
 from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import Floats
 
@@ -101,7 +101,7 @@ def multiplier(curve: Curve, row: int = 0) -> float:
 
 
 def closed_orbit(
-    curve: Curve, means: Floats, points: Floats | None = None, gap: float = GAP
+    curve: Curve, means: Floats, points: Floats | None = None, gap: float = LEAST_GAP
 ) -> Attractor | None:
     """Return a closed orbit with its means over each drive period and its states there.
 

@@ -24,7 +24,7 @@ from frictionlab.values.quantities import Floats
 
 FEW_MAPS, MOST_MAPS, PAYS = 2000, 5000, 5
 """Numbers of true maps after which no further leap is tried: MOST_MAPS if each has led over PAYS periods."""
-MOST_STEPS = 5_000_000
+MOST_LEAP_STEPS = 5_000_000
 """Number of steps in all maps after which no further leap is tried."""
 SHARE, FLOOR = 0.02, 1e-9
 """Largest error of a leap: SHARE of the distance that it leads, plus FLOOR of the size of the state."""
@@ -38,7 +38,7 @@ OBEYED = 0.1
 """Largest error of the affine map there, over the change by a map."""
 
 
-FARTHEST = 3.0
+FARTHEST_LEAP = 3.0
 """Largest distance of a leap, over the largest size of the motion so far: farther out maps cost millions of steps."""
 LONGEST = 1_000_000_000
 """Largest number of maps of one leap."""
@@ -109,7 +109,7 @@ class Leaper:
     @property
     def _most(self) -> float:
         most = MOST_MAPS if self.periods > PAYS * self.maps else FEW_MAPS
-        return min(most, MOST_STEPS / max(self.price, 1.0))
+        return min(most, MOST_LEAP_STEPS / max(self.price, 1.0))
 
     def leap(self) -> Floats | None:
         """Lead the motion on by one leap.
@@ -120,7 +120,7 @@ class Leaper:
         matrix = self._derivative()
         length = self._within_growth(matrix)
         while length >= self.fewest and np.isfinite(matrix).all() and self.maps < self._most:
-            if not np.linalg.norm(power_sum(matrix, length)[1] @ base) <= FARTHEST * self._size:
+            if not np.linalg.norm(power_sum(matrix, length)[1] @ base) <= FARTHEST_LEAP * self._size:
                 length //= 2
                 continue
             moved, error, defect = self._tried(matrix, base, length)

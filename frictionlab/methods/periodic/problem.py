@@ -93,7 +93,7 @@ def _least_gap(mass: Mass, common: float) -> float:
     """
     weakest = min(mass.damping, mass.transverse_damping or mass.damping)
     lost = -math.expm1(-math.pi * weakest / mass.frequency * common)
-    return min(GAP, 0.3 * lost) if lost > 0.0 else GAP
+    return min(LEAST_GAP, 0.3 * lost) if lost > 0.0 else LEAST_GAP
 
 
 def _with_free_state(scene: Scene, law: Any, body: BodyNumbers) -> BodyNumbers:
@@ -136,7 +136,7 @@ class Transient(NamedTuple):
         )
 
 
-GAP = 1e-7
+LEAST_GAP = 1e-7
 """Least difference to one of the Floquet multipliers of an orbit that counts as attractive."""
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""
@@ -168,7 +168,7 @@ class PeriodicProblem:
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.undamped = undamped(scene)
-        self.gap = _least_gap(self.mass, self.common) if law.count() == 0 else GAP
+        self.gap = _least_gap(self.mass, self.common) if law.count() == 0 else LEAST_GAP
         self.body = self.body._replace(periods=self.common)
         constant = (
             not (self.body.bends or isinstance(self.zero, complex))

@@ -16,7 +16,7 @@ from frictionlab.methods.periodic.continuation import DIFFERENTIATED, answer_cur
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, Goal
 from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit
 from frictionlab.methods.periodic.period_map import map_kind, size_of
-from frictionlab.methods.periodic.problem import GAP, PeriodicProblem, Transient
+from frictionlab.methods.periodic.problem import LEAST_GAP, PeriodicProblem, Transient
 from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
@@ -35,7 +35,7 @@ FINE, SAME_MEAN = 1e-9, 1e-6
 ENDED = "ended here, with no memory and with that of steady sliding"
 HOLDS = "a deflection keeps what it began with, for ever or for thousands of periods"
 NO_END = "no steady state found: the memory does not repeat within {} periods"
-WITHIN = "the slip stays within the elastic range of the contact"
+STAYS_ELASTIC = "the slip stays within the elastic range of the contact"
 
 
 class PrescribedPeriods(PeriodicProblem):
@@ -46,7 +46,7 @@ class PrescribedPeriods(PeriodicProblem):
         self.law, self.kernel = law.under_load(self.mass.normal_load), answer_curve
         self.zero = 0.0 if scene.load_along_belt_only else 0j
         self.body = driven(self.mass, self.zero)
-        self.common, self.undamped, self.gap = self.body.periods, True, GAP
+        self.common, self.undamped, self.gap = self.body.periods, True, LEAST_GAP
         self.maps = table_of_maps(self.law, self.body)
         self.goal = Goal(tolerance, False, False, False, MUCH_WORK)
         self.size = interpreted(size_of)(self.law, self.zero)
@@ -90,7 +90,7 @@ class MemoryPoint:
             self.found = self._left_open([], "no slip")
         elif room > 0.0:
             ends = abs(self.law.friction(0.0, room, 0.0))
-            self.found = self._left_open([-ends, ends], WITHIN)
+            self.found = self._left_open([-ends, ends], STAYS_ELASTIC)
             if scene.load_along_belt_only:
                 self.reached = [self.problem.deflected(each) for each in (-room, room, 0.0)]
         else:

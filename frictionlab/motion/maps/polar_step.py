@@ -31,7 +31,7 @@ from frictionlab.motion.linalg import eliminate
 from frictionlab.motion.maps.case import Case
 from frictionlab.values.quantities import Floats
 
-STAGES = 5
+RADAU_STAGES = 5
 """Number of stages of a step by Radau IIA (order 9, L-stable; Hairer & Wanner 1996, IV.5)."""
 
 
@@ -39,12 +39,12 @@ def _radau() -> tuple[Floats, Floats]:
     """Return nodes in (0, 1] and the matrix that integrates the polynomial through them from 0 to each."""
     legendre = np.polynomial.legendre.Legendre.basis
     # The nodes of Radau IIA are the zeros of P_s - P_(s-1), the right end 1 among them: it is divided out.
-    inside = (legendre(STAGES) - legendre(STAGES - 1)) // np.polynomial.Polynomial([-1.0, 1.0]).convert(
-        kind=np.polynomial.Legendre
-    )
+    inside = (legendre(RADAU_STAGES) - legendre(RADAU_STAGES - 1)) // np.polynomial.Polynomial(
+        [-1.0, 1.0]
+    ).convert(kind=np.polynomial.Legendre)
     nodes = np.concatenate((0.5 * (1.0 + np.sort(inside.roots().real)), [1.0]))
     # Row i integrates every monomial up to node i; the inverse turns values at the nodes into monomials.
-    powers = np.arange(STAGES)
+    powers = np.arange(RADAU_STAGES)
     values = nodes[:, None] ** powers
     sums = nodes[:, None] ** (powers + 1) / (powers + 1)
     return nodes, sums @ np.linalg.inv(values)
@@ -61,7 +61,7 @@ fast."""
 ALL_NODES: Floats = np.concatenate(([0.0], NODES))
 INVERSE: Floats = np.ascontiguousarray(np.linalg.inv(MATRIX))
 LEAVING: Floats = INVERSE.sum(axis=1)
-_gaps = ALL_NODES[:, None] - ALL_NODES[None, :] + np.eye(STAGES + 1)
+_gaps = ALL_NODES[:, None] - ALL_NODES[None, :] + np.eye(RADAU_STAGES + 1)
 LAGRANGE: Floats = 1.0 / _gaps.prod(axis=1)
 HIGHEST: Floats = LAGRANGE / 252.0
 """Weights that turn values at the nodes into the coefficient of the highest Legendre polynomial; 252 x^5
@@ -117,7 +117,7 @@ class StepRoom(NamedTuple):
 @inner
 def step_room() -> StepRoom:
     """Return arrays for steps."""
-    n, kind = STAGES, np.zeros(STAGES, np.complex128)
+    n, kind = RADAU_STAGES, np.zeros(RADAU_STAGES, np.complex128)
     real = np.zeros(n)
     return StepRoom(
         np.zeros(n + 1),
@@ -142,7 +142,7 @@ def step_room() -> StepRoom:
 def begin_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
     """Write loads and belt at the stages."""
     room.r[0], room.theta[0] = place.r, place.theta
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         now = instant_at(case.body, place.tau + NODES[j] * h)
         room.pushed[j] = load(case.body, now) - belt_acceleration(case.body, case.belt_speed, now)
         room.carried[j] = belt_velocity(case.body, case.belt_speed, now)
@@ -161,15 +161,15 @@ def friction_slope(case: Case, r: float) -> float:
 def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
     """Write positions, friction, and forces turned so that the slip is real, at the stages."""
     # slip w = r exp(i theta): friction acts against r alone, the force across the slip turns it
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         room.along[j] = complex(math.cos(room.theta[j + 1]), math.sin(room.theta[j + 1]))
         room.v[j] = room.carried[j] + room.r[j + 1] * room.along[j]
         room.rub[j] = room.pressed[j] * case.law.sliding_friction(room.r[j + 1])
         room.slope[j] = room.pressed[j] * friction_slope(case, room.r[j + 1])
     # x at a stage is the integral of v by the collocation polynomial through the stages
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         increment = 0.0 * place.x
-        for k in range(STAGES):
+        for k in range(RADAU_STAGES):
             increment += MATRIX[j, k] * room.v[k]
         room.x[j] = place.x + h * increment
         force = room.pushed[j] - restoring_force(case.body, room.x[j], room.v[j])
@@ -180,7 +180,7 @@ def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
 def _turning(j: int, room: StepRoom) -> float:
     """Return the derivative of theta at a stage, times the step."""
     total = 0.0
-    for k in range(STAGES):
+    for k in range(RADAU_STAGES):
         total += INVERSE[j, k] * (room.theta[k + 1] - room.theta[0])
     return total
 
@@ -190,7 +190,7 @@ def _assemble(case: Case, h: float, room: StepRoom) -> None:
     """Write the Jacobian of the stages' equations: rows and columns first of r, then of theta."""
     # r' = Re(force) - friction(r) and r theta' = Im(force), each times h; the inverse of the collocation matrix gives
     # the derivatives at the stages from the values there
-    n = STAGES
+    n = RADAU_STAGES
     for j in range(n):
         back = room.along[j].conjugate()
         for k in range(n):
@@ -214,12 +214,12 @@ def _assemble(case: Case, h: float, room: StepRoom) -> None:
 @inner
 def _lack(h: float, room: StepRoom) -> None:
     """Write the right side: the residuals of the stages' equations."""
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         growth = 0.0
-        for k in range(STAGES):
+        for k in range(RADAU_STAGES):
             growth += INVERSE[j, k] * (room.r[k + 1] - room.r[0])
         room.right[j, 0] = h * (room.force[j].real - room.rub[j]) - growth
-        room.right[STAGES + j, 0] = h * room.force[j].imag - room.r[j + 1] * _turning(j, room)
+        room.right[RADAU_STAGES + j, 0] = h * room.force[j].imag - room.r[j + 1] * _turning(j, room)
 
 
 @inner
@@ -229,15 +229,15 @@ def _move(room: StepRoom) -> float:
     Return the part taken.
     """
     part = 1.0
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         if room.r[j + 1] + part * room.right[j, 0] < 0.1 * room.r[j + 1]:
             part = -0.9 * room.r[j + 1] / room.right[j, 0]
-        turn = abs(room.right[STAGES + j, 0])
+        turn = abs(room.right[RADAU_STAGES + j, 0])
         if part * turn > 1.0:
             part = 1.0 / turn
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         room.r[j + 1] += part * room.right[j, 0]
-        room.theta[j + 1] += part * room.right[STAGES + j, 0]
+        room.theta[j + 1] += part * room.right[RADAU_STAGES + j, 0]
     return part
 
 
@@ -251,13 +251,13 @@ def solve_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> bool:
         _lack(h, room)
         eliminate(room.matrix, room.right)
         change, turn, largest, force = 0.0, 0.0, 0.0, 0.0
-        for j in range(STAGES):
-            change, turn = max(change, abs(room.right[j, 0])), max(turn, abs(room.right[STAGES + j, 0]))
+        for j in range(RADAU_STAGES):
+            change, turn = max(change, abs(room.right[j, 0])), max(turn, abs(room.right[RADAU_STAGES + j, 0]))
             force = max(force, abs(room.force[j]))
         if not change + turn < math.inf:
             return False
         part = _move(room)
-        for j in range(STAGES):
+        for j in range(RADAU_STAGES):
             largest = max(largest, room.r[j + 1])
         if part == 1.0 and turn <= CONVERGED and change <= max(CONVERGED * largest, 4e-15 * h * force):
             _forces(case, place, h, room)
@@ -272,7 +272,7 @@ def step_error(h: float, accuracy: float, room: StepRoom) -> float:
     Below one the step is accurate.
     """
     growth, turn, largest = 0.0, 0.0, 0.0
-    for k in range(STAGES + 1):
+    for k in range(RADAU_STAGES + 1):
         growth += HIGHEST[k] * room.r[k]
         turn += HIGHEST[k] * (room.theta[k] - room.theta[0])
         largest = max(largest, room.r[k])
@@ -283,7 +283,7 @@ def step_error(h: float, accuracy: float, room: StepRoom) -> float:
 @inner
 def end_step(case: Case, place: SlipPlace, h: float, room: StepRoom, tangent: Tangent) -> complex:
     """Carry the tangent over a solved step, and return the integral of the position."""
-    n, body = STAGES, case.body
+    n, body = RADAU_STAGES, case.body
     _assemble(case, h, room)
     for j in range(n):
         back = room.along[j].conjugate()
@@ -317,9 +317,9 @@ def end_step(case: Case, place: SlipPlace, h: float, room: StepRoom, tangent: Ta
 def _polynomial(values: Any, at: float) -> float:
     """Evaluate the polynomial through start and stages of a step at a share of it, also beyond its end."""
     total = 0.0
-    for k in range(STAGES + 1):
+    for k in range(RADAU_STAGES + 1):
         weight = LAGRANGE[k]
-        for m in range(STAGES + 1):
+        for m in range(RADAU_STAGES + 1):
             if m != k:
                 weight *= at - ALL_NODES[m]
         total += weight * values[k]
@@ -329,11 +329,11 @@ def _polynomial(values: Any, at: float) -> float:
 @inner
 def guess_on(place: SlipPlace, first: float, last: float, room: StepRoom) -> None:
     """Guess slip as the last solved step continues, between these two shares of it."""
-    r, theta = np.empty(STAGES), np.empty(STAGES)
-    for j in range(STAGES):
+    r, theta = np.empty(RADAU_STAGES), np.empty(RADAU_STAGES)
+    for j in range(RADAU_STAGES):
         at = first + NODES[j] * (last - first)
         r[j], theta[j] = max(_polynomial(room.r, at), 0.05 * place.r), _polynomial(room.theta, at)
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         room.r[j + 1], room.theta[j + 1] = r[j], theta[j]
 
 
@@ -345,7 +345,7 @@ def guess_afresh(
     along = complex(math.cos(place.theta), math.sin(place.theta))
     excess, rise = (held * along.conjugate()).real - limit, (rate * along.conjugate()).real
     turn = (rate * along.conjugate()).imag / (limit + abs(excess))
-    for j in range(STAGES):
+    for j in range(RADAU_STAGES):
         t = NODES[j] * h
         if place.r > 0.0:
             room.r[j + 1], room.theta[j + 1] = max(place.r + excess * t, 0.1 * place.r), place.theta

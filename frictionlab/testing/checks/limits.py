@@ -62,7 +62,7 @@ def _settles_gently(law: FrictionLaw) -> bool:
     return abs(bending) <= law.sliding_friction(SWING)
 
 
-NEAR = 1e-3
+REACHED_BY_STEPS = 1e-3
 """Distance of time stepping to shooting, over the friction coefficient, that short steps reach."""
 
 
@@ -126,12 +126,12 @@ def two_methods(one: Given) -> None:
     curve = [_body(friction=4.0, mu=mu, belt_speed=speed, frequency=1.5) for speed in (8.0, 16.0, 24.0)]
     shooting, march = Shooting(), March()
     assume(not any(method.refusal(curve[0], law) for method in (shooting, march)))
-    marched = march.solve(curve, law, NEAR * mu)
+    marched = march.solve(curve, law, REACHED_BY_STEPS * mu)
     found = [i for i in range(3) if marched.status[i] == "ok"]
     assume(found)
     for i in found:
         one.require(
-            marched.error[i] <= NEAR * mu,
+            marched.error[i] <= REACHED_BY_STEPS * mu,
             f"at belt speed {curve[i].belt_speed:g} ever shorter steps do not come near to the mean of shooting",
             apart=float(marched.error[i]),
             march=float(marched.mean[i].real),

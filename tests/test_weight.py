@@ -14,8 +14,8 @@ LIMITS = {
     "compile": 1413,
     "curves": 841,
     "laws": 686,
-    "methods": 10119,
-    "motion": 4406,
+    "methods": 10114,
+    "motion": 4409,
     "report": 1772,
     "runner": 4301,
     "scene": 1659,
@@ -23,7 +23,7 @@ LIMITS = {
     "testing": 1491,
     "theory": 831,
     "values": 1380,
-    "tests": 29035,
+    "tests": 29036,
     "plugins": 611,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

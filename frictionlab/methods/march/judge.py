@@ -13,8 +13,6 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-import numpy as np
-
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import PROVED, Answers, Ledger, Status
 from frictionlab.methods.march.laps import CLOSED, LATE, RESTING, STALLED, TIRED, TOO_FAST, TOO_STIFF
@@ -23,7 +21,7 @@ from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.steppers import MARGIN, Resolution, StepperName
 from frictionlab.motion.orbit.read import read_columns
 from frictionlab.motion.orbit.record import Orbit
-from frictionlab.motion.orbit.recorder import NODES
+from frictionlab.motion.orbit.recorder import orbit_at_one_place
 from frictionlab.scene.scene import Scene
 
 FIRST_STEPS = 64
@@ -205,7 +203,7 @@ def why_not(run: MarchResult) -> str:
 
 
 class MarchedPoint:
-    """One scene, marched, and what is entered of it at one place of a ledger."""
+    """Scene that is marched, and its answer, to be entered in a ledger."""
 
     def __init__(
         self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan, full: FullAnswer
@@ -277,9 +275,7 @@ class MarchedPoint:
 
     def _at_one_place(self, run: MarchResult) -> Orbit:
         """Return the orbit of a mass that keeps its place, over a time of 2 pi."""
-        whole, rests = np.ones((1, NODES.size), np.complex128), np.array([run.verdict == RESTING])
-        tau = math.pi * (NODES[None, :] + 1.0)
-        orbit = Orbit(tau, run.place.x * whole, 0.0 * whole, -run.mean * whole, rests)
+        orbit = orbit_at_one_place(run.place.x, run.mean, run.verdict == RESTING)
         return orbit if self.march.facts.sticks else replace(orbit, stick=None)
 
     def _orbit(self, run: MarchResult, own: int) -> Orbit:

@@ -112,7 +112,7 @@ def falling_zero(problem: MarchProblem, start: StepStart, h: float) -> float:
 
 @embedded
 def slip_trace(trace: SlipTrace, w: Any) -> SlipTrace:
-    """The trace with one more slip velocity."""
+    """Return the trace with one more slip velocity."""
     speed, turned = length(w), (trace.w * w.conjugate()).real < 0.0
     return SlipTrace(w if speed > 0.0 else trace.w, max(trace.met, speed), trace.reverses or turned)
 

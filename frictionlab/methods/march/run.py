@@ -85,7 +85,7 @@ class MarchRun:
         self.periods = 1.0 if scene.is_harmonic else float(scene.periods)
         planar = in_the_plane(for_kernels(self.mass), self.periods)
         self.body = on_the_line(self.mass, self.periods) if straight else planar
-        self.lightest, self.heaviest = shares_of_load(scene)
+        self.lightest, _ = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
         self._fresh, self._spring = first_memory(scene, law), memory_stiffness(scene, law)

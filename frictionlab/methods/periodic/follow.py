@@ -220,6 +220,7 @@ class Follower:
         self, problem: PeriodicProblem, scene: Scene, candidate: Attractor | None, patience: int
     ) -> None:
         self._problem, self._scene, self._patience = problem, scene, patience
+        self._section = DrivePeriods(problem, scene)
         self.known = [] if candidate is None else [candidate]
         self.seconds = 0.0
 
@@ -229,9 +230,9 @@ class Follower:
         It is followed plainly and led by leaps in turn, to its end, or until it is sure to end on a known orbit.
         """
         first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
-        leaper = Leaper(DrivePeriods(self._problem, self._scene), state)
+        leaper = Leaper(self._section, state)
         asked, more, slow = min(FEWEST, self._patience), leaper.fewest, False
-        way = self._problem.carried(self._scene.belt_speed, state, asked, first.known if first else None)
+        way = self._stretch(state, asked, first, slow)
         while (end := self._end_of(way, first)) is None and self._may_go_on(way, asked):
             leaper.state, before, asked = way.state, leaper.periods, len(way.means)
             leaper.price = way.steps / asked
@@ -276,7 +277,7 @@ class Follower:
         away = float(np.linalg.norm(found.points - way.state, axis=1).min())
         if away <= NEARLY_REPEATED * float(np.linalg.norm(way.state)):
             return found
-        stays = self._problem.undamped and DrivePeriods(self._problem, self._scene).stays(way.state)
+        stays = self._problem.undamped and self._section.stays(way.state)
         return kept(way) if stays else None
 
     def _leapt(self, leaper: Leaper) -> Attractor | None:

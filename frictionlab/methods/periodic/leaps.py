@@ -120,10 +120,13 @@ class Leaper:
         matrix = self._derivative()
         length = self._within_growth(matrix)
         while length >= self.fewest and np.isfinite(matrix).all() and self.maps < self._most:
-            if not np.linalg.norm(power_sum(matrix, length)[1] @ base) <= FARTHEST_LEAP * self._size:
+            power, total = power_sum(matrix, length)
+            moved = total @ base
+            if not np.linalg.norm(moved) <= FARTHEST_LEAP * self._size:
                 length //= 2
                 continue
-            moved, error, defect = self._tried(matrix, base, length)
+            parts = [power_sum(matrix, max(1, int(share * length))) for share in ON_THE_WAY]
+            error, defect = self._missed([(power, total), *parts], base)
             allowed = SHARE * float(np.linalg.norm(moved)) + FLOOR * self._size
             ratio = error / allowed if math.isfinite(error) else math.inf
             if ratio <= 1.0:
@@ -151,19 +154,15 @@ class Leaper:
         missed = np.linalg.norm(predicted - after, axis=1)
         return bool((missed <= OBEYED * changed + noise).all())
 
-    def _tried(self, matrix: Floats, base: Floats, length: int) -> tuple[Floats, float, Floats]:
-        """Return the displacement of a leap over ``length`` periods, its error, and its defect at the end.
+    def _missed(self, sums: list[tuple[Floats, Floats]], base: Floats) -> tuple[float, Floats]:
+        """Return the error of a leap, and its defect at the end, from true maps at its end and on the way.
 
-        True maps at the end and on the way give the error.
+        sums: ``power_sum`` of the whole leap, then of its parts.
         """
-        power, total = power_sum(matrix, length)
-        moved = total @ base
-        parts = [power_sum(matrix, max(1, int(share * length))) for share in ON_THE_WAY]
-        places = np.array([self.state + moved, *(self.state + each[1] @ base for each in parts)])
-        ends = self._mapped(places)
-        expected = np.array([power @ base, *(each[0] @ base for each in parts)])
-        defects = (ends - places - expected) @ total.T
-        return moved, float(np.linalg.norm(defects, axis=1).max()) / 3.0, defects[0]
+        places = np.array([self.state + total @ base for _, total in sums])
+        expected = np.array([power @ base for power, _ in sums])
+        defects = (self._mapped(places) - places - expected) @ sums[0][1].T
+        return float(np.linalg.norm(defects, axis=1).max()) / 3.0, defects[0]
 
     def _within_growth(self, matrix: Floats) -> int:
         """Return the length of the next leap, in which a growing deviation grows a thousandfold at most."""

@@ -87,7 +87,7 @@ class Closed(NamedTuple):
 
 
 class Open(NamedTuple):
-    """No single loop: the mean is anything between two numbers, or where they are NaN, none was found; and why."""
+    """Range of means where no single loop exists, and why."""
 
     low: float
     high: float

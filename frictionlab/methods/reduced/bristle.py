@@ -30,7 +30,7 @@ from frictionlab.theory import friction_free_velocity
 from frictionlab.values.quantities import Floats
 
 LOOPS_ROUNDING = 99.0 * ROUNDING
-"""Of friction over a loop, relative to steady friction, beyond that of formulas."""
+"""Rounding error of friction over a loop, relative to steady friction, beyond that of formulas."""
 STEADY = 0.98
 """Largest Floquet multiplier of a motion of one drive period that counts as stable."""
 NO_DECAY = "without damping and without slip reversal the free oscillation does not decay"
@@ -41,7 +41,7 @@ _PER_DECADE, _DECADES = 12, 9
 _OF_LOOPS = 1e-4
 """Tolerance of a loop's mean, so loose that its first steps are taken: they are off by 1e-8 of friction at most."""
 _SAMPLES = 64
-"""Of an elastic loop."""
+"""Number of samples of an elastic loop."""
 
 
 class OverSine(NamedTuple):
@@ -159,11 +159,11 @@ class _Balancing(NamedTuple):
         return self.known[amplitude]
 
     def pull(self, amplitude: float) -> complex:
-        """The force that the motion requires."""
+        """Return the force that the motion requires."""
         return self.impedance * amplitude + self.mass.normal_load * self.friction(amplitude).first
 
     def excess(self, amplitude: float) -> float:
-        """The size of that force, less the load's."""
+        """Return the size of that force, less the load's."""
         return abs(self.pull(amplitude)) - abs(self.mass.force)
 
     def amplitudes(self) -> Floats:
@@ -193,7 +193,7 @@ class _Balancing(NamedTuple):
 
 
 def _point(what: _Balancing) -> tuple[OneBalance | None, str]:
-    """The balance where there is one alone, and why it is no answer."""
+    """Return the balance if it is the only one, else None, and why it is no answer."""
     mass, found = what.mass, what.balances()
     if len(found) != 1:
         return None, AMBIGUOUS.format(", ".join(f"{amplitude:.4g}" for amplitude in found) or "none")

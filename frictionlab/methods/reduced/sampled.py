@@ -201,7 +201,7 @@ def balanced(what: Equations, belt_speed: float, start: Phasors) -> SampledMotio
 def _settled_by_spreading(
     what: Equations, belt_speed: float, start: Phasors, count: int
 ) -> SampledMotion | None:
-    """The same from motions under friction whose jump is spread over ever less of slip."""
+    """Return the motion, found from others under friction whose jump is spread over ever less of slip."""
     for spread in (float(np.abs(start).max()) * _SPREADS).tolist():
         near = _settled(what._replace(spread=spread), belt_speed, start, count)
         if near is None:

@@ -409,10 +409,13 @@ def left_unfinished(reached: Sequence[Attractor]) -> str:
     stopped, lost = [one.followed for one in reached if one.stopped], sum(one.lost for one in reached)
     if lost:
         return f"{lost} of {len(reached)} starts run away: far out the spring along the belt pushes outward"
-    told = f"{len(stopped)} of {len(reached)} starts were followed for {max(stopped, default=0)} drive periods only"
-    if stopped and min(stopped) < FEWEST:
-        return f"{told}: that took hundreds of thousands of steps, for friction near rest is steep"
-    return f"{told}, and had not ended" if stopped else ""
+    if not stopped:
+        return ""
+    starts, periods = f"{len(stopped)} of {len(reached)} starts", max(stopped)
+    if min(stopped) >= FEWEST:
+        return f"{starts} had not ended after {periods} drive periods"
+    steep = "that took hundreds of thousands of steps, for friction near rest is steep"
+    return f"{starts} were followed for {periods} drive periods only: {steep}"
 
 
 def _describe_state(orbit: Destination, digits: int) -> str:

@@ -50,7 +50,7 @@ from frictionlab.methods.shooting.undriven_path import (
 from frictionlab.methods.under_way import each_told, once
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit
-from frictionlab.motion.orbit.recorder import NODES
+from frictionlab.motion.orbit.recorder import orbit_at_one_place
 from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import Floats
 
@@ -346,13 +346,7 @@ class Undriven:
         """The orbit of the motion; of one that stands still, over 2 pi; none of one that takes too many steps."""
         if motion.kind in (ModelWord.AT_REST, ModelWord.SLIDES):
             x = motion.state[0] / math.sqrt(self._path.mass.stiffness)
-            whole, rests = (
-                np.ones((1, NODES.size), np.complex128),
-                np.array([motion.kind == ModelWord.AT_REST]),
-            )
-            return Orbit(
-                0.5 * TURN * (NODES[None, :] + 1.0), x * whole, 0.0 * whole, -motion.mean * whole, rests
-            )
+            return orbit_at_one_place(x, motion.mean, motion.kind == ModelWord.AT_REST)
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
         accuracy = min(max(0.1 * self.tolerance, LEAST), self._accuracy)
         # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well

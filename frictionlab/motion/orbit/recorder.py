@@ -11,6 +11,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.interpret import run_as
+from frictionlab.motion.orbit.record import Orbit
 from frictionlab.values.quantities import Floats
 
 PER_PANEL = 10
@@ -21,6 +22,12 @@ _differences = NODES[:, None] - NODES[None, :] + np.eye(PER_PANEL)
 BARYCENTRIC: Floats = 1.0 / _differences.prod(axis=1)
 _ratios = BARYCENTRIC[None, :] / BARYCENTRIC[:, None] / _differences * (1.0 - np.eye(PER_PANEL))
 DERIVATIVE: Floats = _ratios - np.diag(_ratios.sum(axis=1))
+
+
+def orbit_at_one_place(x: complex, mean: complex, rests: bool) -> Orbit:
+    """Return the orbit of a mass that keeps its place, over a time of 2 pi; mean: of its friction coefficient."""
+    whole, tau = np.ones((1, PER_PANEL), np.complex128), np.pi * (NODES[None, :] + 1.0)
+    return Orbit(tau, x * whole, 0.0 * whole, -mean * whole, np.array([rests]))
 
 
 @inner

@@ -136,7 +136,10 @@ def test_quick_drives_leave_the_mean_over_the_slip_that_they_make(
         drive=fl.Drive(amplitude=swing * frequency, frequency=frequency),
     )
     state, turned = fl.steady_state(scene, law), math.acos(-share)
-    friction = lambda angle: law.sliding_friction(swing * abs(share + math.cos(angle)))  # noqa: E731
+
+    def friction(angle: float) -> float:
+        return law.sliding_friction(swing * abs(share + math.cos(angle)))
+
     mean = (quad(friction, 0.0, turned)[0] - quad(friction, turned, math.pi)[0]) / math.pi
 
     if state.status == "ok":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from bouc_wen import BoucWen
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
@@ -51,6 +51,15 @@ def test_a_large_exponent_is_an_ideal_spring_that_slips():
 
     for path in (0.1, 0.3, 0.1 + 0.1j):
         assert slid(law, 0.05j, path) == pytest.approx(jenkins.deflected(0.05j, path), abs=2e-3)
+
+
+@given(exponent=st.floats(1, 20), beta_share=st.floats(1e-6, 2.0), turn=st.floats(0, 6.3))
+@example(exponent=10.5, beta_share=0.005, turn=math.pi)  # a thousandth outside its set slip leads away
+def test_slip_leads_no_deflection_out_of_its_set(exponent, beta_share, turn):
+    law = BoucWen(mu=1, stiffness=1, exponent=exponent, beta_share=beta_share)
+    outward = cmath.rect(1, turn)
+
+    assert (law.rate(1.0, outward) * outward.conjugate()).real <= 1e-12
 
 
 def test_unloading_is_elastic_where_beta_is_gamma_and_stiffer_where_it_is_more():

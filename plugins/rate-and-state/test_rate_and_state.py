@@ -182,8 +182,8 @@ ROCK = RateAndState(mu=0.6, a=0.005, b=0.01, slip_length="1 um", reference_speed
 @deep("thousands of periods of the free mass")
 @pytest.mark.parametrize(
     ("belt_speed", "mean"),
-    # Radau in the logarithms of slip speed and age at 1e-9
-    [(30, 0.515383438), (100, 0.515367543), (300, 0.5153806495)],
+    # Radau in the logarithms of slip speed and age at 1e-11, ten cycles after the first, which agree to 3e-11
+    [(30, 0.51538256152), (100, 0.51536739717), (300, 0.51538064937)],
 )
 def test_a_mean_that_is_hardly_known_is_not_told(belt_speed: float, mean: float) -> None:
     """At 30 um/s the answer was .43 +- 1.7, status ok."""
@@ -192,7 +192,8 @@ def test_a_mean_that_is_hardly_known_is_not_told(belt_speed: float, mean: float)
     state = fl.steady_state(scene, ROCK)
 
     if state.status == "ok":
-        assert abs(state.mean_friction - mean) <= state.error <= 1e-3 * 0.6
+        assert abs(state.mean_friction - mean) <= state.error + 3e-11
+        assert state.error <= 1e-3 * 0.6
         assert state.velocity_amplitude > 0.02  # [m/s here] of the slip, which few of the periods show
     else:
         assert state.status == "failed"

@@ -79,7 +79,7 @@ class Leaper:
 
     def __post_init__(self) -> None:
         self._length = 2 * self.fewest
-        self._size = self.section.size(self.state)
+        self._size = 0.0
 
     def lead(
         self, known: Callable[[], Sequence[KnownOrbit]], close_beside: Callable[[Floats], object]
@@ -118,6 +118,7 @@ class Leaper:
         """
         base = self._mapped(self.state[None])[0] - self.state
         matrix = self._derivative()
+        self._size = max(self._size, self.section.size(self.state))  # a motion from rest has none at first
         length = self._within_growth(matrix)
         while length >= self.fewest and np.isfinite(matrix).all() and self.maps < self._most:
             power, total = power_sum(matrix, length)
@@ -132,7 +133,6 @@ class Leaper:
             if ratio <= 1.0:
                 self.state = self.state + moved + defect / 3.0  # one order more
                 self.periods += length
-                self._size = max(self._size, self.section.size(self.state))
                 self._length = int(min(LONGEST, length * min(8.0, 0.9 * max(ratio, 1e-6) ** (-1 / 3))))
                 return _newton(matrix, base)
             length = int(length * max(0.1, 0.8 * ratio ** (-1 / 3))) if math.isfinite(ratio) else length // 10

@@ -104,13 +104,16 @@ def static_friction(one: Given) -> None:
     seldom="no parameters drawn have a bounded set",
 )
 def invariant_set(one: Given) -> None:
-    """No slip leads a memory out of its set, and from just outside every slip leads back or leaves it."""
+    """No slip leads a memory out of its set.
+
+    Farther outside a law may lead away: Bouc and Wen's does where unloading gives back more than loading stored.
+    """
     law = one.law(lambda law: isinstance(law, MemoryLaw) or law.largest_deflection() < math.inf)
     v = one.slip()
     if isinstance(law, MemoryLaw):
         _stays_within(one, law, v)
         return
-    radius = law.largest_deflection() * (1.0 + one.draw("share outside", st.just(1e-13) | sizes(1e-6, 1e-1)))
+    radius = law.largest_deflection() * (1.0 + 1e-13)
     for side in (1.0, -1.0):
         out = side * law.rate(v, side * radius)
         one.require(

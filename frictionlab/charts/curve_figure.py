@@ -34,7 +34,6 @@ from frictionlab.charts.looks import (
 from frictionlab.charts.marks import (
     CurveEnd,
     OnsetMark,
-    draw_closer_view,
     draw_end_labels,
     draw_onsets,
     draw_speed_marks,
@@ -182,9 +181,6 @@ class _Picture:
         write_heading(axes, title, width, pad)
         for curve in curves:
             draw_onsets(axes, self.of.onsets_of(curve), self.of.looks.color(curve))
-        if self.of.options.inset and self.column == "mean_friction":
-            drawn = [(curve.column(abscissa), curve.column(self.column)) for curve in curves]
-            draw_closer_view(axes, drawn, lambda inside: self.lines(inside, curves))
         return axes
 
     def lines(self, axes: Axes, curves: Sequence[CurveData]) -> None:

@@ -288,5 +288,4 @@ def _difference_figure(one: CurveFigure, law: str | None) -> CurveFigure | None:
     of = rf"({what})" if "/" in what else what
     name = re.sub(r"[^\w ,.()+-]|_", " ", law)[:MOST_OF_A_NAME]  # nothing that a formula reads as its own
     words = {"mean_friction": rf"${what} - {of}_\text{{{name}}}$"}
-    options = one.options.model_copy(update={"inset": False})
-    return replace(one, family=less, columns=["mean_friction"], options=options, words=words, level=True)
+    return replace(one, family=less, columns=["mean_friction"], words=words, level=True)

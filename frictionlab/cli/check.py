@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.output import WRONG, CommandError, metered, print_doubts, print_records, print_result
+from frictionlab.cli.output import WRONG, CommandError, metered, print_records, print_result
 from frictionlab.values.columns import BELT_SPEEDS
 
 if TYPE_CHECKING:
@@ -57,8 +57,6 @@ def check_command(
     from frictionlab.runner.price import MOST, prices
 
     jobs = at_measured(batch.jobs(study, None, overrides, law_files, plugins))
-    for job in jobs:
-        print_doubts(job.study)
     planned = [(job.name, plan(job.study)) for job in jobs]
     most = max(1.0, MOST / len(jobs))
     clock, processor = time.perf_counter(), time.process_time()

@@ -18,7 +18,6 @@ from frictionlab.values.printable import printable
 
 if TYPE_CHECKING:
     from frictionlab.runner.progress import Meter
-    from frictionlab.study.study import Study
 
 STDOUT, STDERR = 1, 2
 """File descriptors."""
@@ -148,14 +147,6 @@ def print_message(message: str) -> None:
     _erase_progress()
     with suppress(OSError, ValueError):
         click.echo(printable(message), err=True)
-
-
-def print_doubts(study: Study) -> None:
-    """What of a study may be a slip, on stderr."""
-    from frictionlab.runner.batch import doubts
-
-    for sentence in doubts(study):
-        print_message(sentence)
 
 
 def flush_stdout(code: int) -> int:

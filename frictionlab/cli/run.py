@@ -20,7 +20,6 @@ from frictionlab.cli.output import (
     OK,
     CommandError,
     metered,
-    print_doubts,
     print_message,
     print_records,
     print_result,
@@ -159,8 +158,6 @@ def run_command(**given: Any) -> int:
     batch.check_folders(jobs, asked.existing, alone=asked.part is None)
     index = batch.index_folder(asked.study, asked.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    for job in jobs:
-        print_doubts(job.study)
     if asked.part is not None:
         for job in jobs:
             _run_part(job, asked, asked.part)

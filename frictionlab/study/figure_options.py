@@ -17,6 +17,7 @@ from frictionlab.study.parts import LawChoice
 from frictionlab.study.sweeps import Sweeps
 from frictionlab.values.columns import CURVE_MEASURES
 from frictionlab.values.notes import Mistake, Notes, WrongValues, dotted
+from frictionlab.values.quantities import gone
 from frictionlab.values.validation import build_record
 
 WIDTHS = {"single": 85.0, "double": 175.0}
@@ -42,13 +43,16 @@ EVERY = "all"
 """In place of the mapping: every figure there is, drawn as usual."""
 
 
+NO_INSET = "closer views are gone: narrow the sweep, or draw the figure of differences"
+
+
 class FigureOptions(Record):
     """How figures are drawn.
 
     normalized: mean over steady sliding friction against belt speed over V_lin
     against: label of the law that others are subtracted from in the figure of differences; Coulomb's where left out,
     else the first
-    inset: a closer view of where curves differ, where they are level over much of the axis
+    inset: false; closer views are gone
     width: of a journal's column (single, 85 mm) or page (double, 175 mm); what the figure needs where left out
     formats: of the files; the report shows svg or png
     title: whether the study's title stands above
@@ -60,7 +64,7 @@ class FigureOptions(Record):
 
     normalized: StrictBool = False
     against: str | None = None
-    inset: StrictBool = False
+    inset: Annotated[StrictBool, gone(True, NO_INSET)] = False
     width: Literal["single", "double"] | None = None
     formats: Annotated[tuple[Literal["svg", "png", "pdf"], ...], Field(min_length=1)] = ("svg", "png")
     title: StrictBool = True

@@ -183,11 +183,11 @@ document(
 )
 
 
-def gone(value: str, why: str) -> BeforeValidator:
+def gone(value: object, why: str) -> BeforeValidator:
     """Make the mark of a field that no longer takes a value: it is refused by this sentence."""
 
     def refuse(given: Any) -> Any:
-        if given == value:
+        if type(given) is type(value) and given == value:
             raise ValueError(why)
         return given
 

@@ -12,7 +12,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from drawn_figures import curves_of, drawn, legend_of, names_above, titles_of
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
@@ -106,18 +105,6 @@ def test_stick_is_a_band_along_the_points_where_it_is(laws: pd.DataFrame) -> Non
     assert "stick" not in " ".join(legend_of(_drawn(sticky)))
 
 
-def test_a_closer_view_stands_where_much_of_the_axis_is_level(laws: pd.DataFrame) -> None:
-    one = laws[laws["law"] == "coulomb"]
-    first, second = (one[one["scene.drive.frequency"] == value] for value in (1.0, 1.5))
-
-    def views(table: pd.DataFrame) -> list[Axes]:
-        return [child for child in _drawn(table, inset=True).axes[0].child_axes if child.lines]
-
-    (view,) = views(second)
-    assert view.get_xlim()[1] < 30.0
-    assert views(first) == []  # of 60 the last 10 are level
-
-
 @pytest.mark.parametrize(("width", "millimetres"), [("single", 85.0), ("double", 175.0)])
 def test_widths_are_those_of_a_journal(laws: pd.DataFrame, width: str, millimetres: float) -> None:
     assert _drawn(laws, width=width).get_figwidth() * 25.4 == pytest.approx(millimetres)
@@ -158,6 +145,7 @@ def test_a_study_says_how_its_figures_are_drawn() -> None:
     [
         ({"normalised": True}, "unknown key"),
         ({"inset": 1}, "must be true or false, got 1"),
+        ({"inset": True}, "closer views are gone: narrow the sweep, or draw the figure of differences"),
         ({"against": "columb"}, "must be one of coulomb"),
         ({"width": "wide"}, "must be 'single' or 'double'"),
         ({"width": 85}, "must be 'single' or 'double'; got 85"),

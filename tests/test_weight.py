@@ -11,23 +11,23 @@ LIMITS = {
     "beside the rooms": 87,
     "charts": 1804,
     "cli": 985,
-    "compile": 1413,
+    "compile": 1409,
     "curves": 841,
     "laws": 686,
-    "methods": 10114,
-    "motion": 4409,
+    "methods": 9943,
+    "motion": 4592,
     "report": 1772,
     "runner": 4271,
-    "scene": 1659,
+    "scene": 1706,
     "study": 2792,
     "testing": 1491,
     "theory": 831,
     "values": 1380,
-    "tests": 29001,
+    "tests": 29006,
     "plugins": 618,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 343
+MOST_FILES = 342
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

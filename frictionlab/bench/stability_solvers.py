@@ -127,13 +127,13 @@ def _one_step(
     return MarchRun(scene, law, stepper).run(Resolution(steps=1, most=1, theta=theta), start).place
 
 
-def _decay(problem: None, tau: float, x: float, v: float) -> tuple[float, float]:
+def _decay(problem: None, stage: int, tau: float, x: float, v: float) -> tuple[float, float]:
     return -v, 0.0
 
 
 def _growth_of_dop853(z: float) -> float:
     """Of a velocity that decays at the rate 1."""
-    step = interpreted(dop853.stepper(_decay))
+    step = interpreted(dop853.stepper(_decay, dop853.unprepared))
     return abs(float(step(None, 0.0, dop853.State(0.0, 1.0, -1.0, 0.0), z).v))
 
 

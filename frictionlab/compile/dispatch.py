@@ -229,59 +229,54 @@ def by_dimension(on_the_line: Any, in_the_plane: Any, in_lanes: Any = None) -> A
     return _overloaded(chosen, resolve, bodies, **INNER, fastmath=True)
 
 
-def by_variation(of_one_sine: Any, of_varying: Any) -> Any:
-    """A kernel function with two bodies, chosen by the field ``varying`` of its first argument.
+def by_nearness(of_near: Any, of_noted: Any = None, of_any: Any = None) -> Any:
+    """A kernel function with two or three bodies, chosen by the time that its second argument is.
 
-    of_one_sine: for a record whose field is empty, or that has none: one sine is all that changes in time in it.
+    of_near: of an instant ``Near`` the anchor of a step. of_noted: of a stage that was ``Noted``. of_any: of others.
     """
-    return _by_field("varying", of_one_sine, of_varying)
 
-
-def by_contact(of_any_load: Any, of_constant_stiffness: Any) -> Any:
-    """The same, chosen by the field ``keeps_stiffness``.
-
-    of_constant_stiffness: for a contact that keeps its stiffness while the normal load changes.
-    """
-    return _by_field("keeps_stiffness", of_any_load, of_constant_stiffness)
-
-
-def by_springs(of_linear: Any, of_bent: Any) -> Any:
-    """The same, chosen by the field ``bends``, of arithmetic that never meets NaN or infinity on purpose.
-
-    of_linear: for a body whose springs and dashpots are linear.
-    """
-    return _by_field("bends", of_linear, of_bent, **INNER, fastmath=True)
-
-
-def _by_field(name: str, of_empty: Any, of_filled: Any, **options: Any) -> Any:
-    """By whether a field of the first argument is filled: its own, or that of what varies or of the body it holds."""
+    def body_for(fields: Any) -> Any:
+        return of_noted if "swing" in fields else of_near if "part" in fields else of_any
 
     def chosen(*arguments: Any) -> Any:
-        return (of_filled if _held(arguments[0], name) else of_empty)(*arguments)
+        return body_for(arguments[1]._fields)(*arguments)
 
     def resolve(*types: Any) -> Any:
-        return of_filled if _is_filled(types[0], name) else of_empty
+        return body_for(getattr(types[1], "fields", ()))
 
-    of_empty, of_filled = (getattr(body, "py_func", body) for body in (of_empty, of_filled))
-    return _overloaded(chosen, resolve, (of_empty, of_filled), **options)
-
-
-def _held(record: Any, name: str) -> Any:
-    if not isinstance(record, tuple):
-        return ()
-    if hasattr(record, name):
-        return getattr(record, name)
-    inside = (getattr(record, part, ()) for part in ("varying", "body"))
-    return next((held for part in inside if part and (held := _held(part, name))), ())
+    bodies = [each for each in (of_near, of_noted, of_any) if each is not None]
+    return _overloaded(chosen, resolve, bodies, **EMBEDDED)
 
 
-def _is_filled(record: Any, name: str) -> bool:
-    if not hasattr(record, "fields"):
-        return False
-    held = dict(zip(record.fields, record, strict=True))
-    if name in held:
-        return len(held[name]) > 0
-    return any(_is_filled(held[part], name) for part in ("varying", "body") if part in held)
+EMBEDDED = INNER | {"forceinline": True, "fastmath": True}
+
+
+def by_variation(of_one_sine: Any, of_varying: Any, **options: Any) -> Any:
+    """A kernel function with two bodies, chosen by the field ``varying`` of its first argument.
+
+    of_one_sine: for a record whose field is empty, as lanes have it: one sine is all that changes in time in it.
+    """
+
+    def chosen(*arguments: Any) -> Any:
+        return (of_varying if _varies(arguments[0]) else of_one_sine)(*arguments)
+
+    def resolve(*types: Any) -> Any:
+        return of_varying if _varies(types[0]) else of_one_sine
+
+    of_one_sine, of_varying = (getattr(body, "py_func", body) for body in (of_one_sine, of_varying))
+    return _overloaded(chosen, resolve, (of_one_sine, of_varying), **options)
+
+
+def _varies(record: Any) -> bool:
+    """Whether the field ``varying`` of a record, or of the body it holds, is filled; record: it, or its type."""
+    varying, body = _part(record, "varying"), _part(record, "body")
+    return len(varying) > 0 if varying is not None else body is not None and _varies(body)
+
+
+def _part(record: Any, name: str) -> Any:
+    """A field of a named tuple, or of numba's type of one; None where it has none of that name."""
+    fields = getattr(record, "fields", ())
+    return record.types[fields.index(name)] if name in fields else getattr(record, name, None)
 
 
 def as_argument(function: Any) -> Any:

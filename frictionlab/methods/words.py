@@ -85,8 +85,7 @@ class ModelWord(StrEnum):
         "two legs",
         "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature",
     )
-    LEGS = "legs", "prescribed slip along a line: deflection exact along every leg, Gauss-Lobatto quadrature"
-    PRESCRIBED_MEMORY = "slip and memory", "prescribed slip: memory by Rodas5P, periodic"
+    PRESCRIBED_MEMORY = "slip and memory", "prescribed slip: the memory that repeats, by maps of a period"
     MDSM_CLOSED = (
         "mdsm",
         "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)",

@@ -2,10 +2,15 @@
 
 Every map, every march and every reading of energies calls these functions. Only here are load, normal load
 and belt functions of time: each has its group below, with the rates, bounds and integrals that the time at
-rest needs. Where two functions are given for one name, the first is for a body on which one sine is all that
-changes in time. The second is for a ``varying`` body, within the current piece between two corners. Functions
-of the belt also accept the numbers of a prescribed slip as ``body``. Maps follow the deviation (y, u = y')
-from the harmonic reference motion of the body.
+rest needs. They are sums of waves and straight lines between corners, whose numbers stand in one table.
+
+A step of slip takes them from polynomials about its anchor: ``expand_about`` fills these into the head of the table,
+and ``note_instants`` their values at all stages of a step, so that a rate reads one number a stage. The head belongs
+to one motion at a time: the maps of every problem have a table of their own.
+
+Functions of the belt also accept the numbers of a prescribed slip as ``body``. Maps follow the deviation
+(y, u = y') from the harmonic reference motion of the body. Eight motions in lanes know one sine alone, whose body has
+no table: where two functions are given by variation, the first is theirs.
 """
 
 from __future__ import annotations
@@ -17,8 +22,9 @@ import numpy as np
 
 from frictionlab.compile.decorators import fast, fast_embedded, inner
 from frictionlab.compile.dispatch import (
+    EMBEDDED,
     by_dimension,
-    by_springs,
+    by_nearness,
     by_variation,
     compilable,
     length,
@@ -27,7 +33,22 @@ from frictionlab.compile.lane_arrays import friction_by_lane
 from frictionlab.compile.stack import items_of
 from frictionlab.motion.events import reference_acceleration
 from frictionlab.motion.waves import (
-    number_at,
+    add_line,
+    begin_expansion,
+    belt_course,
+    bend_near,
+    clear,
+    expand,
+    integrate,
+    load_course,
+    note,
+    noted,
+    polynomial,
+    polynomial_bend,
+    polynomial_slope,
+    press_course,
+    slope_near,
+    value_near,
     wave_at,
     wave_bound,
     wave_impulse,
@@ -36,22 +57,50 @@ from frictionlab.motion.waves import (
 )
 from frictionlab.scene import body as _plain
 from frictionlab.scene.body import BodyNumbers
-from frictionlab.scene.varying import PER_PIECE, Course, Packed
+from frictionlab.scene.varying import (
+    AT_PLACE,
+    AT_PUSH,
+    AT_SHARE,
+    AT_SWING,
+    BELT_SWING,
+    EDGES,
+    FASTEST,
+    FREE_VELOCITY,
+    FREE_X,
+    LINES,
+    PER_PIECE,
+    PERIODS,
+    PIECES,
+    PLACE,
+    PRESSES,
+    PUSH,
+    PUSHES,
+    QUICKEST,
+    REST_FIRST,
+    REST_TERMS,
+    SHARE,
+    SWING,
+    WAVES,
+    Packed,
+)
 
 linear_force = fast(_plain.restoring_force)
-_bent_force = fast(compilable(_plain.bent_force))
-restoring_force = by_springs(_plain.restoring_force, _bent_force)
+restoring_force = fast(compilable(_plain.bent_force))
 """restoring_force(body, x, v): force of springs and dashpots, per unit mass."""
-dissipated = by_springs(
-    lambda body, x, v: linear_force(body, 0.0 * v, v),
-    lambda body, x, v: _bent_force(body, x, v) - _bent_force(body, x, 0.0 * v),
-)
-"""dissipated(body, x, v): force of the dashpots alone, per unit mass."""
-slopes_at = by_springs(lambda body, x, v: body, _plain.bent_slopes)
+
+
+@fast
+def dissipated(body: BodyNumbers, x: Any, v: Any) -> Any:
+    """Return the force of the dashpots alone, per unit mass."""
+    bends = body.bends
+    return linear_force(body, 0.0 * v, v) + (bends.dashpot_1 + bends.dashpot_2 * x.real) * x.real * v.real
+
+
+slopes_at = fast(compilable(_plain.bent_slopes))
 """slopes_at(body, x, v): linear body whose ``restoring_force`` is that of small changes of this motion."""
 span = fast(_plain.span)
-planar = inner(compilable(_plain.in_the_plane))
-"""planar(body): numbers of a body on the line as those of a mass in the plane."""
+planar = inner(compilable(_plain.planar_numbers))
+"""planar(mass, periods): numbers of a mass as kernels have it, in the plane."""
 
 
 class Instant(NamedTuple):
@@ -60,6 +109,27 @@ class Instant(NamedTuple):
     tau: float
     sine: float
     cosine: float
+
+
+class Near(NamedTuple):
+    """Time near the anchor of a step; part: angle of the quickest wave since then."""
+
+    tau: float
+    part: float
+
+
+class Noted(NamedTuple):
+    """Stage of a step: what ``note_instants`` left in the table.
+
+    swing: slip of the reference. push: load that the reference leaves. share: normal load over its mean. place:
+    way that the reference has slid since the anchor.
+    """
+
+    tau: float
+    swing: Any
+    push: Any
+    share: float
+    place: float
 
 
 @inner
@@ -75,203 +145,152 @@ START = Instant(0.0, 0.0, 1.0)
 
 # --- the load -----------------------------------------------------------------------------------------------------
 
-load = by_variation(
-    lambda body, now: body.load_sine * now.sine + body.load_cosine * now.cosine,
-    lambda body, now: wave_at(body.varying.table, body.varying.load, body.varying.begins, now.tau),
-)
-"""load(body, now): driving force on the mass; on the line a number, in the plane x1 + i x2.
 
-Not ``fast``: where the reference balances all of the load, the difference must be zero to the last bit."""
+@inner
+def load(body: Any, now: Instant) -> Any:
+    """Return the driving force on the mass; on the line a number, in the plane x1 + i x2."""
+    return wave_at(body.varying.table, load_course(body), body.varying.begins, now.tau)
 
 
-def _rates_of_one_sine(body: Any, now: Instant) -> Any:
-    """Return the first and the second derivative of the load.
-
-    They are omega times the load a quarter of a period later, and minus omega^2 times the load.
-    """
-    later = Instant(now.tau + 0.5 * math.pi / body.frequency, now.cosine, -now.sine)
-    return body.frequency * load(body, later), -(body.frequency**2) * load(body, now)
+@inner
+def load_rates(body: Any, now: Instant) -> Any:
+    """Return the first and the second derivative of the load."""
+    table, course = body.varying.table, load_course(body)
+    return wave_rate(table, course, now.tau, 1), wave_rate(table, course, now.tau, 2)
 
 
-def _rates_of_waves(body: Any, now: Instant) -> Any:
-    return wave_rate(body.varying.table, body.varying.load, now.tau, 1), wave_rate(
-        body.varying.table, body.varying.load, now.tau, 2
-    )
+@inner
+def load_curvature(body: Any) -> float:
+    """Return a bound on the second derivative of the load, at any time."""
+    return wave_bound(body.varying.table, load_course(body), 2)
 
 
-load_rates = by_variation(_rates_of_one_sine, _rates_of_waves)
-"""load_rates(body, now): first and second derivative of the load."""
-
-
-def _curvature_of_one_sine(body: Any) -> float:
-    quarter = Instant(0.5 * math.pi / body.frequency, 1.0, 0.0)
-    return body.frequency**2 * (abs(load(body, quarter)) + abs(load(body, START)))
-
-
-load_curvature = by_variation(
-    _curvature_of_one_sine, lambda body: wave_bound(body.varying.table, body.varying.load, 2)
-)
-"""load_curvature(body): bound on the second derivative of the load, at any time."""
-
-
-def _impulse_of_one_sine(body: Any, start: float, end: float) -> Any:
-    """Return the integral of the load.
-
-    It is the length of the interval times the load half way, times sin(a)/a with half the angle passed as a.
-    """
-    half_angle = 0.5 * body.frequency * (end - start)
-    mean = math.sin(half_angle) / half_angle if half_angle > 0.0 else 1.0
-    return (end - start) * (mean * load(body, instant_at(body, 0.5 * (start + end))))
-
-
-def _impulse_of_waves(body: Any, start: float, end: float) -> Any:
-    return wave_impulse(body.varying.table, body.varying.load, body.varying.begins, start, end)
-
-
-load_impulse = by_variation(_impulse_of_one_sine, _impulse_of_waves)
-"""load_impulse(body, start, end): integral of the load."""
+@inner
+def load_impulse(body: Any, start: float, end: float) -> Any:
+    """Return the integral of the load."""
+    return wave_impulse(body.varying.table, load_course(body), body.varying.begins, start, end)
 
 
 # --- the normal load ----------------------------------------------------------------------------------------------
 
 
-def _varying_load(body: Any, now: Instant) -> float:
-    return body.normal_load + wave_at(
-        body.varying.table, body.varying.normal_load, body.varying.begins, now.tau
-    )
+def _share_at(body: Any, now: Instant) -> float:
+    added = wave_at(body.varying.table, press_course(body), body.varying.begins, now.tau)
+    return 1.0 + added / body.normal_load
 
 
-normal_load = by_variation(lambda body, now: body.normal_load, _varying_load)
-"""normal_load(body, now): force that presses the mass on the belt; friction is this times its coefficient."""
+_share_at_any_time = by_variation(lambda body, now: 1.0, _share_at)
 
 
-def _varying_share(body: Any, now: Instant) -> float:
-    return (
-        1.0
-        + wave_at(body.varying.table, body.varying.normal_load, body.varying.begins, now.tau)
-        / body.normal_load
-    )
+def _share_near(body: Any, now: Near) -> float:
+    return polynomial(body.varying.table, SHARE, now.part) if body.varying.table[PRESSES] != 0.0 else 1.0
 
 
-load_share = by_variation(lambda body, now: 1.0, _varying_share)
+load_share = by_nearness(
+    _share_near, lambda body, now: now.share, lambda body, now: _share_at_any_time(body, now)
+)
 """load_share(body, now): normal load over its mean."""
 
-normal_load_rate = by_variation(
-    lambda body, now: 0.0,
-    lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 1),
+
+@fast_embedded
+def normal_load(body: Any, now: Any) -> float:
+    """Return the force that presses the mass on the belt; friction is this times its coefficient."""
+    return body.normal_load * load_share(body, now)
+
+
+def _share_rate_near(body: Any, now: Near) -> float:
+    table = body.varying.table
+    slope = polynomial_slope(table, SHARE, now.part) if table[PRESSES] != 0.0 else 0.0
+    return body.normal_load * table[QUICKEST] * slope
+
+
+def _share_bend_near(body: Any, now: Near) -> float:
+    table = body.varying.table
+    bend = polynomial_bend(table, SHARE, now.part) if table[PRESSES] != 0.0 else 0.0
+    return body.normal_load * table[QUICKEST] ** 2 * bend
+
+
+normal_load_rate = by_nearness(
+    _share_rate_near,
+    of_any=lambda body, now: wave_rate(body.varying.table, press_course(body), now.tau, 1),
 )
 """normal_load_rate(body, now): derivative of the normal load."""
 
-normal_load_bend = by_variation(
-    lambda body, now: 0.0,
-    lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 2),
+normal_load_bend = by_nearness(
+    _share_bend_near,
+    of_any=lambda body, now: wave_rate(body.varying.table, press_course(body), now.tau, 2),
 )
 """normal_load_bend(body, now): second derivative of the normal load."""
 
-normal_load_curvature = by_variation(
-    lambda body: 0.0, lambda body: wave_bound(body.varying.table, body.varying.normal_load, 2)
-)
-"""normal_load_curvature(body): bound on the second derivative of the normal load, at any time."""
+
+@inner
+def normal_load_curvature(body: Any) -> float:
+    """Return a bound on the second derivative of the normal load, at any time."""
+    return wave_bound(body.varying.table, press_course(body), 2)
 
 
 # --- the belt -----------------------------------------------------------------------------------------------------
 
 
-def _vibrating_speed(body: Any, belt_speed: float, now: Instant) -> Any:
-    return belt_speed + wave_at(body.varying.table, body.varying.belt, body.varying.begins, now.tau)
+@inner
+def belt_velocity(body: Any, belt_speed: float, now: Instant) -> Any:
+    """Return the velocity of the belt; belt_speed: its mean, along x1."""
+    return belt_speed + wave_at(body.varying.table, belt_course(body), body.varying.begins, now.tau)
 
 
-belt_velocity = by_variation(lambda body, belt_speed, now: belt_speed, _vibrating_speed)
-"""belt_velocity(body, belt_speed, now): velocity of the belt; belt_speed: its mean, along x1."""
-
-belt_acceleration = by_variation(
-    lambda body, belt_speed, now: 0.0,
-    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 1),
-)
-"""belt_acceleration(body, belt_speed, now): derivative of the belt's velocity."""
-
-belt_jerk = by_variation(
-    lambda body, belt_speed, now: 0.0,
-    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 2),
-)
-"""belt_jerk(body, belt_speed, now): derivative of the belt's acceleration."""
-
-belt_snap = by_variation(
-    lambda body, belt_speed, now: 0.0,
-    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 3),
-)
-"""belt_snap(body, belt_speed, now): derivative of the belt's jerk."""
+@inner
+def belt_rate(body: Any, now: Instant, order: int) -> Any:
+    """Return the derivative of this order of the belt's velocity."""
+    return wave_rate(body.varying.table, belt_course(body), now.tau, order)
 
 
-def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
-    return (end - start) * belt_speed + wave_impulse(
-        body.varying.table, body.varying.belt, body.varying.begins, start, end
-    )
+@inner
+def belt_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
+    """Return the distance that the belt travels between two times of one piece."""
+    swung = wave_impulse(body.varying.table, belt_course(body), body.varying.begins, start, end)
+    return (end - start) * belt_speed + swung
 
 
-belt_path = by_variation(
-    lambda body, belt_speed, start, end: (end - start) * belt_velocity(body, belt_speed, START),
-    _vibrating_path,
-)
-"""belt_path(body, belt_speed, start, end): distance that the belt travels between two times of one piece."""
-
-
-def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
-    swung = wave_path_integral(body.varying.table, body.varying.belt, body.varying.begins, start, end)
+@inner
+def belt_path_integral(body: Any, belt_speed: float, start: float, end: float) -> Any:
+    """Return the integral of the distance travelled since the start."""
+    swung = wave_path_integral(body.varying.table, belt_course(body), body.varying.begins, start, end)
     return 0.5 * (end - start) * ((end - start) * belt_speed) + swung
 
 
-belt_path_integral = by_variation(
-    lambda body, belt_speed, start, end: 0.5 * (end - start) * belt_path(body, belt_speed, start, end),
-    _integral_of_vibrating_path,
-)
-"""belt_path_integral(body, belt_speed, start, end): integral of the distance travelled since the start."""
+@inner
+def belt_advance(body: Any, belt_speed: float) -> float:
+    """Return the distance that the belt travels in a span; its vibration adds nothing."""
+    return span(body) * belt_speed
 
-belt_advance = by_variation(
-    lambda body, belt_speed: belt_path(body, belt_speed, 0.0, span(body)),
-    lambda body, belt_speed: span(body) * belt_speed,
-)
-"""belt_advance(body, belt_speed): distance that the belt travels in a span; its vibration adds nothing."""
 
-belt_swing = by_variation(lambda body: 0.0, lambda body: body.varying.whole.belt_swing)
+belt_swing = by_variation(lambda body: 0.0, lambda body: body.varying.table[BELT_SWING])
 """belt_swing(body): largest difference between the belt's speed and its mean."""
 
 
 # --- pieces between corners ---------------------------------------------------------------------------------------
 
 
-def _pieces_of_a_span(body: Any) -> int:
-    whole = body.varying.whole
-    laps = math.floor(body.periods / whole.periods + 0.5)
-    return laps * whole.pieces
-
-
-pieces_of = by_variation(lambda body: 1, _pieces_of_a_span)
-"""pieces_of(body): number of pieces in one span of the body; within a piece everything is smooth in time."""
+@inner
+def pieces_of(body: Any) -> int:
+    """Return the number of pieces in one span of the body; within a piece everything is smooth in time."""
+    table = body.varying.table
+    laps = max(1, math.floor(body.periods / table[PERIODS] + 0.5))
+    return laps * int(table[PIECES])
 
 
 @inner
 def _edge(varying: Any, k: int) -> float:
     """Return the time at which the k-th piece since the start begins."""
-    pieces, first = varying.whole.pieces, varying.whole.edges
+    pieces, first = int(varying.table[PIECES]), int(varying.table[EDGES])
     return k // pieces * varying.table[first + pieces] + varying.table[first + k % pieces]
 
 
-def _piece_between_corners(body: Any, k: int) -> Any:
+@inner
+def piece_ends(body: Any, k: int) -> Any:
+    """Return the times at which the k-th piece of a span begins and ends."""
     last = k == pieces_of(body) - 1
     return _edge(body.varying, k), span(body) if last else _edge(body.varying, k + 1)
-
-
-piece_ends = by_variation(lambda body, k: (0.0, span(body)), _piece_between_corners)
-"""piece_ends(body, k): times at which the k-th piece of a span begins and ends."""
-
-
-@inner
-def _course_on_line(varying: Any, course: Course, place: int) -> Course:
-    """Return the function of time whose line, value and slope, stands at this place of the table."""
-    value = number_at(varying.table, place, course.value)
-    slope = number_at(varying.table, place + 2, course.value)
-    return Course(course.first, course.terms, value, slope)
 
 
 @inner
@@ -284,68 +303,40 @@ def changed(body: BodyNumbers, periods: float, varying: Any) -> BodyNumbers:
     )  # fmt: skip
 
 
-def _body_of_piece(body: BodyNumbers, k: int) -> BodyNumbers:
+@inner
+def in_piece(body: BodyNumbers, k: int) -> BodyNumbers:
+    """Return the body with the functions of time that hold in the k-th piece of its span."""
     old = body.varying
-    at = old.whole.lines + PER_PIECE * (k % old.whole.pieces)
-    normal = Course(old.normal_load.first, old.normal_load.terms, old.table[at + 8], old.table[at + 9])
-    varying = Packed(
-        old.table,
-        old.whole,
-        _edge(old, k),
-        _course_on_line(old, old.load, at),
-        _course_on_line(old, old.belt, at + 4),
-        normal,
-        old.keeps_stiffness,
-    )
-    return changed(body, body.periods, varying)
+    at = int(old.table[LINES]) + PER_PIECE * (k % int(old.table[PIECES]))
+    return changed(body, body.periods, Packed(old.table, _edge(old, k), at, old.keeps_stiffness))
 
 
-in_piece = by_variation(lambda body, k: body, _body_of_piece)
-"""in_piece(body, k): body with the functions of time that hold in the k-th piece of its span."""
-
-
-def _body_at(body: BodyNumbers, tau: float) -> BodyNumbers:
-    varying, whole = body.varying, body.varying.whole
-    k = whole.pieces * math.floor(tau / varying.table[whole.edges + whole.pieces])
+@inner
+def body_at(body: BodyNumbers, tau: float) -> BodyNumbers:
+    """Return the body with the functions of time that hold in the piece at this time."""
+    varying, pieces = body.varying, int(body.varying.table[PIECES])
+    k = pieces * math.floor(tau / varying.table[int(varying.table[EDGES]) + pieces])
     while tau >= _edge(varying, k + 1):
         k += 1
     return in_piece(body, k)
 
 
-body_at = by_variation(lambda body, tau: body, _body_at)
-"""body_at(body, tau): body with the functions of time that hold in the piece at this time."""
-
-
-def _with_bare_table(body: Any) -> Any:
+@inner
+def bare(body: Any, table: Any) -> Any:
+    """Return the body with a bare pointer to a table, which must outlive it."""
     old = body.varying
-    varying = Packed(
-        items_of(old.table),
-        old.whole,
-        old.begins,
-        old.load,
-        old.belt,
-        old.normal_load,
-        old.keeps_stiffness,
-    )
-    return changed(body, body.periods, varying)
+    return changed(body, body.periods, Packed(items_of(table), old.begins, old.at, old.keeps_stiffness))
 
 
-bare = by_variation(lambda body: body, _with_bare_table)
-"""bare(body): body with a bare pointer in place of the table. The memory lives as long as the array that
-Python holds."""
-
-quickest_of = by_variation(lambda body: body.frequency, lambda body: body.varying.whole.quickest)
+quickest_of = by_variation(lambda body: body.frequency, lambda body: body.varying.table[QUICKEST])
 """quickest_of(body): highest circular frequency of all functions of time."""
 
 
-def _without_loads(body: BodyNumbers, zero: float) -> bool:
-    loads = abs(body.load_sine) + abs(body.load_cosine)
-    return loads + abs(body.reference_sine) + abs(body.reference_cosine) == 0.0
-
-
-_free_on_the_line = by_dimension(_without_loads, lambda body, zero: False)
-is_free = by_variation(lambda body, zero: _free_on_the_line(body, zero), lambda body, zero: False)
-"""is_free(body, zero): whether nothing changes in time."""
+@inner
+def is_free(body: BodyNumbers) -> bool:
+    """Check whether nothing changes in time."""
+    reference = abs(body.reference_sine) + abs(body.reference_cosine)
+    return body.varying.table[WAVES] == 0.0 and body.varying.table[PIECES] == 1.0 and reference == 0.0
 
 
 # --- the motion ---------------------------------------------------------------------------------------------------
@@ -393,43 +384,48 @@ def mean_friction(impulse: Any, time: float) -> Any:
 def holding_force(body: BodyNumbers, belt_speed: float, now: Instant, x: Any) -> Any:
     """Return the force of friction that keeps a mass at x at rest on the belt, its first and second derivative."""
     carried = belt_velocity(body, belt_speed, now) + 0.0 * x
-    pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
-    jerk = belt_jerk(body, belt_speed, now) + 0.0 * x
+    pushed, jerk = belt_rate(body, now, 1) + 0.0 * x, belt_rate(body, now, 2) + 0.0 * x
     rate, bend = load_rates(body, now)
     beside = slopes_at(body, x, carried)
     bend = bend - _turning(body, x, carried, pushed)
     return (
         load(body, now) - restoring_force(body, x, carried) - pushed,
         rate - restoring_force(beside, carried, pushed) - jerk,
-        bend - restoring_force(beside, pushed, jerk) - belt_snap(body, belt_speed, now),
+        bend - restoring_force(beside, pushed, jerk) - belt_rate(body, now, 3),
     )
 
 
-_belt_bound = by_variation(
-    lambda body, order: 0.0, lambda body, order: wave_bound(body.varying.table, body.varying.belt, order)
-)
-"""_belt_bound(body, order): bound on the derivative of this order of the belt's velocity, at any time."""
+@inner
+def _belt_bound(body: Any, order: int) -> float:
+    """Return a bound on the derivative of this order of the belt's velocity, at any time."""
+    return wave_bound(body.varying.table, belt_course(body), order)
 
 
-def _turning_of_bends(body: BodyNumbers, x: Any, v: Any, a: Any) -> Any:
+@fast
+def _turning(body: BodyNumbers, x: Any, v: Any, a: Any) -> float:
+    """Return the second derivative of the restoring force less that of constant slopes.
+
+    The change of the slopes along the motion causes it.
+    """
     x1, v1, bends = x.real, v.real, body.bends
     spring = 2.0 * bends.spring_2 + 6.0 * bends.spring_3 * x1 + 2.0 * bends.dashpot_2 * v1
     return (spring * v1 + 2.0 * (bends.dashpot_1 + 2.0 * bends.dashpot_2 * x1) * a.real) * v1
 
 
-_turning = by_springs(lambda body, x, v, a: 0.0, _turning_of_bends)
-"""_turning(body, x, v, a): second derivative of the restoring force less that of constant slopes, caused by
-the change of the slopes along the motion."""
-
-look_ahead = by_springs(lambda body: 1e300, lambda body: 0.25 / quickest_of(body))
-"""look_ahead(body): time at rest within which ``holding_curvature`` at a position is valid."""
+@inner
+def look_ahead(body: BodyNumbers) -> float:
+    """Return the time at rest within which ``holding_curvature`` at a position is valid."""
+    return 0.25 / quickest_of(body) if len(body.bends.some) > 0 else 1e300
 
 
-def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
+@inner
+def _more(body: BodyNumbers, belt_speed: float, x: Any) -> float:
     """Bound the share of bends in the curvature.
 
     The bound uses the largest position and derivatives within ``look_ahead``.
     """
+    if len(body.bends.some) == 0:
+        return 0.0
     bends, v = body.bends, abs(belt_speed) + belt_swing(body)
     most, a, jerk = abs(x.real) + v * look_ahead(body), _belt_bound(body, 1), _belt_bound(body, 2)
     first, second = abs(bends.dashpot_1), abs(bends.dashpot_2)
@@ -438,9 +434,6 @@ def _more_of_bends(body: BodyNumbers, belt_speed: float, x: Any) -> float:
     turning = (turning + 2.0 * (first + 2.0 * second * most) * a) * v
     by_spring = (2.0 * spring_2 + 3.0 * spring_3 * most) * most + (first + 2.0 * second * most) * v
     return turning + by_spring * a + (first + second * most) * most * jerk
-
-
-_more = by_springs(lambda body, belt_speed, x: 0.0, _more_of_bends)
 
 
 @inner
@@ -462,15 +455,18 @@ def _bent_spring(body: BodyNumbers, belt_speed: float, start: float, tau: float,
     return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 * x1
 
 
-def _impulse_of_bends(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> Any:
-    """Integrate dashpots as functions of the path, springs by Gauss quadrature.
+@inner
+def _bent_impulse(body: BodyNumbers, belt_speed: float, start: float, end: float, x: Any) -> float:
+    """Integrate the nonlinear force: dashpots as functions of the path, springs by Gauss quadrature.
 
     This is exact on a belt that does not vibrate, else accurate to rounding.
     """
+    if len(body.bends.some) == 0:
+        return 0.0
     bends, first, last = body.bends, x.real, (x + belt_path(body, belt_speed, start, end)).real
     half, third = 0.5 * bends.dashpot_1, bends.dashpot_2 / 3.0
     impulse = (half + third * last) * last * last - (half + third * first) * first * first
-    parts = _parts(body, end - start)
+    parts = 1 + int(8.0 * quickest_of(body) * (end - start)) if belt_swing(body) > 0.0 else 1
     step = 0.5 * (end - start) / parts
     for k in range(parts):
         middle = start + (2 * k + 1) * step
@@ -479,11 +475,6 @@ def _impulse_of_bends(body: BodyNumbers, belt_speed: float, start: float, end: f
             for side in (-1.0, 1.0):
                 impulse += share * _bent_spring(body, belt_speed, start, middle + side * GAUSS[i] * step, x)
     return impulse
-
-
-_parts = by_variation(lambda body, lasts: 1, lambda body, lasts: 1 + int(8.0 * quickest_of(body) * lasts))
-_bent_impulse = by_springs(lambda body, belt_speed, start, end, x: 0.0 * x, _impulse_of_bends)
-"""_bent_impulse(body, belt_speed, start, end, x): integral of the nonlinear part of the restoring force."""
 
 
 @inner
@@ -540,18 +531,91 @@ def turned(problem: Any, tau: float) -> Any:
     )
 
 
-@fast
-def instant_near(problem: Any, tau: float) -> Instant:
-    """Return the instant at time tau, at most one radian from the anchor of the problem."""
+def _instant_by_turning(problem: Any, tau: float) -> Instant:
     sine, cosine = turned(problem, tau)
     return Instant(tau, sine, cosine)
 
 
+def _instant_of_waves(problem: Any, tau: float) -> Near:
+    return Near(tau, problem.body.varying.table[QUICKEST] * (tau - problem.anchor))
+
+
+instant_near = by_variation(_instant_by_turning, _instant_of_waves, **EMBEDDED)
+"""instant_near(problem, tau): instant at most one radian of the quickest wave from the anchor of the problem."""
+
+
+def _noted_instant(problem: Any, stage: int, tau: float) -> Noted:
+    table, zero = problem.body.varying.table, problem.body.reference_sine
+    swing, push = noted(table, AT_SWING, stage, zero), noted(table, AT_PUSH, stage, zero)
+    return Noted(tau, swing, push, table[AT_SHARE + stage], table[AT_PLACE + stage])
+
+
+instant_of_stage = by_variation(
+    lambda problem, stage, tau: instant_near(problem, tau), _noted_instant, **EMBEDDED
+)
+"""instant_of_stage(problem, stage, tau): instant of a stage of the step for which ``note_instants`` was called."""
+
+
+def _note_instants(problem: Any, tau: float, h: float) -> None:
+    table, zero = problem.body.varying.table, problem.body.reference_sine
+    begin, step = table[QUICKEST] * (tau - problem.anchor), table[QUICKEST] * h
+    note(table, SWING, AT_SWING, begin, step, zero)
+    if table[PUSHES] != 0.0:
+        note(table, PUSH, AT_PUSH, begin, step, zero)
+    if table[PRESSES] != 0.0:
+        note(table, SHARE, AT_SHARE, begin, step, 0.0)
+
+
+note_instants = by_variation(lambda problem, tau, h: None, _note_instants, **EMBEDDED)
+"""note_instants(problem, tau, h): leave in the table what varies, at all stages of a step."""
+
+
+@fast_embedded
+def note_places(problem: Any, tau: float, h: float) -> None:
+    """Leave in the table how far the reference has slid, at all stages of a step."""
+    table = problem.body.varying.table
+    note(table, PLACE, AT_PLACE, table[QUICKEST] * (tau - problem.anchor), table[QUICKEST] * h, 0.0)
+
+
+@fast_embedded
+def expand_about(body: BodyNumbers, belt_speed: float, tau: float, sine: float, cosine: float) -> None:
+    """Leave in the table what varies, as polynomials about a time with this sine and cosine of Omega*tau."""
+    varying, zero, turn = body.varying, body.reference_sine, complex(cosine, sine)
+    table, omega = varying.table, body.frequency
+    unit, since = 1.0 / table[QUICKEST], tau - varying.begins
+    here, rate = reference_velocity(body, sine, cosine), reference_acceleration(body, sine, cosine)
+    begin_expansion(table, SWING, here, rate / omega)
+    table[SWING] = table[SWING] - belt_speed
+    if table[BELT_SWING] != 0.0:
+        belt = belt_course(body)
+        expand(table, SWING, belt.first, belt.terms, -1.0, tau, turn, zero)
+        add_line(table, SWING, -(belt.value + since * belt.slope), -unit * belt.slope)
+    if table[PUSHES] != 0.0:
+        load = load_course(body)
+        clear(table, PUSH, zero)
+        expand(table, PUSH, int(table[REST_FIRST]), int(table[REST_TERMS]), 1.0, tau, turn, zero)
+        add_line(table, PUSH, load.value + since * load.slope, unit * load.slope)
+    if table[PRESSES] != 0.0:
+        press = press_course(body)
+        clear(table, SHARE, 0.0)
+        expand(table, SHARE, press.first, press.terms, 1.0 / body.normal_load, tau, turn, 0.0)
+        line, slope = press.value + since * press.slope, unit * press.slope
+        add_line(table, SHARE, 1.0 + line / body.normal_load, slope / body.normal_load)
+
+
 @inner
+def expand_places(body: BodyNumbers) -> None:
+    """Leave in the table the way that the reference has slid since the anchor."""
+    integrate(body.varying.table, SWING, PLACE, 1.0 / body.varying.table[QUICKEST])
+
+
+@fast_embedded
 def anchored(law: Any, body: BodyNumbers, belt_speed: float, side: float, tau: float) -> Flow:
     """Return the problem with its anchor at this time."""
     angle = body.frequency * tau
-    return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
+    sine, cosine = math.sin(angle), math.cos(angle)
+    expand_about(body, belt_speed, tau, sine, cosine)
+    return Flow(law, body, belt_speed, side, tau, sine, cosine)
 
 
 @inner
@@ -567,12 +631,16 @@ def reference_velocity(body: BodyNumbers, sine: float, cosine: float) -> Any:
     return body.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
 
 
-free_sine = by_springs(lambda body: body.reference_sine, lambda body: body.reference_sine + body.bends.sine)
-free_cosine = by_springs(
-    lambda body: body.reference_cosine, lambda body: body.reference_cosine + body.bends.cosine
-)
-"""free_sine(body), free_cosine(body): amplitudes of the motion without friction, approximate for bodies that
-are not linear."""
+@inner
+def free_sine(body: BodyNumbers) -> Any:
+    """Return the amplitude of the sine in the motion without friction, approximate for bodies that bend."""
+    return body.reference_sine + body.bends.sine
+
+
+@inner
+def free_cosine(body: BodyNumbers) -> Any:
+    """Return the amplitude of the cosine."""
+    return body.reference_cosine + body.bends.cosine
 
 
 @inner
@@ -583,39 +651,38 @@ def swing_of(body: BodyNumbers) -> float:
 
 
 @inner
-def _free_state_of_one_sine(body: BodyNumbers) -> Any:
-    return free_cosine(body), body.frequency * free_sine(body)
+def free_state(body: BodyNumbers) -> Any:
+    """Return position and velocity of the motion without friction at tau = 0.
+
+    If several waves drive it, those of the first unless more is known.
+    """
+    x, v, table = free_cosine(body), body.frequency * free_sine(body), body.varying.table
+    is_known = 0.0 <= table[FASTEST] < math.inf
+    return (table[FREE_X] + 0.0 * x, table[FREE_VELOCITY] + 0.0 * v) if is_known else (x, v)
 
 
-def _free_state_of_waves(body: BodyNumbers) -> Any:
-    x, v = _free_state_of_one_sine(body)
-    whole = body.varying.whole
-    return (whole.x + 0.0 * x, whole.velocity + 0.0 * v) if whole.fastest < math.inf else (x, v)
+@inner
+def fastest_slip(body: BodyNumbers) -> float:
+    """Return the speed of the belt above which slip without friction keeps its side; infinite if not known."""
+    return swing_of(body) if body.varying.table[FASTEST] < 0.0 else body.varying.table[FASTEST]
 
 
-free_state = by_variation(_free_state_of_one_sine, _free_state_of_waves)
-"""free_state(body): position and velocity of the motion without friction at tau = 0; if several waves drive it,
-those of the first unless more is known."""
-fastest_slip = by_variation(lambda body: swing_of(body), lambda body: body.varying.whole.fastest)
-"""fastest_slip(body): speed of the belt above which slip without friction keeps its side; infinite if not known."""
-
-
-def _pushed_away(body: BodyNumbers, x: Any) -> bool:
+@inner
+def runs_away(body: BodyNumbers, x: Any) -> bool:
     """Check whether springs push outward a million times as hard as the linear one would pull back."""
     x1 = x.real
     return (body.bends.spring_2 + body.bends.spring_3 * x1) * x1 < -1e6 * body.stiffness_mean
 
 
-runs_away = by_springs(lambda body, x: False, _pushed_away)
-"""runs_away(body, x): whether a mass at x never comes back."""
+@inner
+def equilibrium(body: BodyNumbers, force: float, v: float) -> float:
+    """Return the position at which springs along x1, and dashpots at this velocity, hold a force.
 
-
-def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
-    """Return the equilibrium on the side where springs stretch to hold the force.
-
-    If there are several, it is the first one.
+    It is on the side where springs stretch; if there are several, it is the first one.
     """
-    missing = force - linear_force(body, 0.0, v)
+    missing = force - linear_force(body, 0.0, v).real
+    if len(body.bends.some) == 0:
+        return missing / (body.stiffness_mean + body.stiffness_split)
     side, low = math.copysign(1.0, missing), 0.0
     high = abs(missing) / (body.stiffness_mean + body.stiffness_split)
     for _ in range(120):
@@ -636,38 +703,25 @@ def _bent_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
     return side * x
 
 
-def _linear_equilibrium(body: BodyNumbers, force: float, v: float) -> float:
-    held = force - (body.damping_mean + body.damping_split) * v
-    return held / (body.stiffness_mean + body.stiffness_split)
+def _push_of_one_sine(body: BodyNumbers, now: Instant) -> Any:
+    sine, cosine = body.load_sine - body.balanced_sine, body.load_cosine - body.balanced_cosine
+    return sine * now.sine + cosine * now.cosine
 
 
-equilibrium = by_springs(_linear_equilibrium, _bent_equilibrium)
-"""equilibrium(body, force, v): position at which springs along x1, and dashpots at this velocity, hold a
-force."""
+def _push_near(body: Any, now: Any) -> Any:
+    table, zero = body.varying.table, body.reference_sine
+    return value_near(table, PUSH, now.part, zero) if table[PUSHES] != 0.0 else 0.0 * zero
 
 
-@inner
-def balanced_load(body: BodyNumbers, now: Instant) -> Any:
-    """Return the force that the reference motion takes."""
-    return body.balanced_sine * now.sine + body.balanced_cosine * now.cosine
+unbalanced_load = by_nearness(_push_near, lambda body, now: now.push, _push_of_one_sine)
+"""unbalanced_load(body, now): part of the load that drives the deviation."""
 
 
-unbalanced_load = by_variation(
-    lambda body, now: (
-        (body.load_sine - body.balanced_sine) * now.sine
-        + (body.load_cosine - body.balanced_cosine) * now.cosine
-    ),
-    lambda body, now: load(body, now) - balanced_load(body, now),
-)
-"""unbalanced_load(body, now): part of the load that drives the deviation, zero to the last bit if the reference
-balances one sine."""
-
-
-@inner
-def unbalanced_rate(body: BodyNumbers, now: Instant) -> Any:
+@fast
+def unbalanced_rate(body: BodyNumbers, now: Near) -> Any:
     """Return the derivative of ``unbalanced_load``."""
-    rate, _bend = load_rates(body, now)
-    return rate - body.frequency * (body.balanced_sine * now.cosine - body.balanced_cosine * now.sine)
+    table, zero = body.varying.table, body.reference_sine
+    return table[QUICKEST] * slope_near(table, PUSH, now.part, zero) if table[PUSHES] != 0.0 else 0.0 * zero
 
 
 @fast
@@ -676,18 +730,35 @@ def deviation_acceleration(body: BodyNumbers, now: Instant, y: Any, u: Any, rub:
     return acceleration_under(body, unbalanced_load(body, now), normal_load(body, now), y, u, rub)
 
 
-@fast
-def deviation_slip(problem: Any, now: Instant, u: Any) -> Any:
-    """Return the slip velocity of a mass whose deviation has velocity u."""
-    v = u + reference_velocity(problem.body, now.sine, now.cosine)
-    return slip(problem.body, problem.belt_speed, now, v)
+def _slip_of_one_sine(problem: Any, now: Instant, u: Any) -> Any:
+    return u + reference_velocity(problem.body, now.sine, now.cosine) - problem.belt_speed
+
+
+def _slip_near(problem: Any, now: Near, u: Any) -> Any:
+    return u + value_near(problem.body.varying.table, SWING, now.part, u)
+
+
+deviation_slip = by_nearness(_slip_near, lambda problem, now, u: u + now.swing, _slip_of_one_sine)
+"""deviation_slip(problem, now, u): slip velocity of a mass whose deviation has velocity u."""
+
+
+def _slip_rate_near(problem: Any, now: Near, a: Any) -> Any:
+    table = problem.body.varying.table
+    return a + table[QUICKEST] * slope_near(table, SWING, now.part, a)
+
+
+deviation_slip_rate = by_nearness(
+    _slip_rate_near,
+    of_any=lambda problem, now, a: a + reference_acceleration(problem.body, now.sine, now.cosine),
+)
+"""deviation_slip_rate(problem, now, a): derivative of the slip where the deviation has acceleration a."""
 
 
 @fast
-def deviation_slip_rate(problem: Any, now: Instant, a: Any) -> Any:
-    """Return the derivative of the slip velocity where the deviation has acceleration a."""
-    rate = a + reference_acceleration(problem.body, now.sine, now.cosine)
-    return rate - belt_acceleration(problem.body, problem.belt_speed, now)
+def reference_jerk(problem: Any, now: Near) -> Any:
+    """Return the second derivative of the slip of the reference."""
+    table, zero = problem.body.varying.table, problem.body.reference_sine
+    return table[QUICKEST] ** 2 * bend_near(table, SWING, now.part, zero)
 
 
 def _friction_in_lanes(problem: Flow, w: Any) -> Any:
@@ -709,7 +780,12 @@ def rates(problem: Flow, tau: float, y: Any, u: Any) -> Any:
 
     Friction is in shares of the mean normal load.
     """
-    now = instant_near(problem, tau)
+    return rates_at(problem, instant_near(problem, tau), y, u)
+
+
+@fast_embedded
+def rates_at(problem: Flow, now: Any, y: Any, u: Any) -> Any:
+    """Return the same at an instant."""
     rub = _friction(problem, deviation_slip(problem, now, u))
     return deviation_acceleration(problem.body, now, y, u, rub), load_share(problem.body, now) * rub
 

@@ -395,7 +395,7 @@ class Body(ScenePart):
             dashpot_1=8.0 * damping_ratio * r,
             dashpot_2=self.amplitude_damping + 8.0 * damping_ratio * r**2,
         )
-        return bends if any(bends) else ()
+        return bends if any(bends[:4]) else ()
 
     @property
     def terms(self) -> list[str]:

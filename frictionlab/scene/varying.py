@@ -8,6 +8,7 @@ current piece.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,7 +49,8 @@ class Varying(NamedTuple):
     Beyond the ends of a piece every function continues as within it. edges [pieces + 1]: ends of the pieces,
     from 0 to the common period. periods: number of periods of the drive in a common period. quickest: highest
     frequency of any wave, at least that of the drive. belt_swing: largest velocity of the belt's vibration.
-    constant_contact: true if bristles keep the stiffness of the mean normal load.
+    constant_contact: true if bristles keep the stiffness of the mean normal load. fastest: -1 if one sine is all
+    that varies, else infinity.
     """
 
     load: Function
@@ -59,6 +61,7 @@ class Varying(NamedTuple):
     quickest: float
     belt_swing: float
     constant_contact: bool
+    fastest: float = math.inf
 
 
 def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Varying:
@@ -94,8 +97,40 @@ def _function(pair: tuple[Signal, Signal], edges: Floats) -> Function:
     )
 
 
-PER_WAVE = 5
-"""Count of numbers per wave: frequency, real and imaginary part of the sine's factor and of the cosine's."""
+# The table of numbers that kernels take: head, rows of waves, lines of every piece, ends of the pieces.
+#
+# The head begins with the polynomials and stage values that a step of slip leaves there (motion/waves.py).
+
+TERMS, STAGES = 8, 12
+"""Counts of even and of odd terms of a polynomial, and of the stages of a step.
+
+Within a radian 16 terms are right to 5e-14 of a wave, and within .7 radians to rounding: longer are only steps that
+are asked to be right to less than 1e-4.
+"""
+SWING, PUSH, SHARE, PLACE = 0, 4 * TERMS, 8 * TERMS, 10 * TERMS
+"""Polynomials: slip of the reference, load that it leaves, normal load over its mean, way of the reference."""
+AT_SWING, AT_PUSH, AT_SHARE, AT_PLACE = (12 * TERMS + k * STAGES for k in (0, 2, 4, 5))
+"""Their values at the stages."""
+POWERS = 12 * TERMS + 6 * STAGES
+"""Terms of cosine and sine of r*s, with r the frequency of the drive over the quickest."""
+(
+    PUSHES, PRESSES, REST_FIRST, REST_TERMS, LINES, EDGES, PIECES, PERIODS, QUICKEST, BELT_SWING, FASTEST, FREE_X,
+    FREE_VELOCITY, LOAD_FIRST, LOAD_TERMS, BELT_FIRST, BELT_TERMS, PRESS_FIRST, PRESS_TERMS, WAVES,
+) = range(POWERS + 2 * TERMS, POWERS + 2 * TERMS + 20)  # fmt: skip
+"""Numbers that are the same in every piece.
+
+PUSHES, PRESSES: 1 if the reference leaves some load, if the normal load changes. REST: rows of the load that is left.
+FASTEST: largest velocity along x1, against the belt's vibration, of the motion without friction; infinite if not
+known, -1 if one sine is all. FREE: state of that motion at tau = 0. WAVES: number of waves of every kind.
+"""
+HEAD = WAVES + 1
+
+WAVE_POWERS, TURNS = 5, 5 + 2 * TERMS
+PER_WAVE = TURNS + 1
+"""Count of numbers per wave: frequency, real and imaginary part of the sine's factor and of the cosine's, terms of
+cosine and sine as in POWERS, and how many multiples of the drive it is above the wave before (-1: none)."""
+MOST_TURNS = 8
+"""Largest number of them; a sine and a cosine of its own cost less than more."""
 PER_PIECE = 10
 """Count of numbers per piece.
 
@@ -115,72 +150,102 @@ class Course(NamedTuple):
     slope: Any
 
 
-class Whole(NamedTuple):
-    """Numbers that are the same in every piece.
-
-    lines, edges: places in the table of the numbers of the pieces and of their ends. pieces: their count.
-    periods, quickest, belt_swing: as in ``Varying``. fastest, x, velocity: largest velocity along x1, against
-    the belt's vibration, of the motion without friction, and its state at tau = 0; infinite if not known.
-    """
-
-    lines: int
-    edges: int
-    pieces: int
-    periods: float
-    quickest: float
-    belt_swing: float
-    fastest: float = math.inf
-    x: float = 0.0
-    velocity: float = 0.0
-
-
 class Packed(NamedTuple):
-    """``Varying`` for kernels; begins: start of the current piece.
+    """``Varying`` for kernels; begins: start of the current piece. at: place of its lines in the table.
 
-    keeps_stiffness: filled if the contact keeps its stiffness while the normal load changes, a type of its
-    own for kernels. table: an array, in kernels a pointer to its items: the waves of the load, the belt and
-    the normal load, then the numbers of every piece, then their ends.
+    keeps_stiffness: filled if the contact keeps its stiffness while the normal load changes, which compilers then
+    know. table: an array, in kernels a pointer to its items.
     """
 
     table: Any
-    whole: Whole
     begins: float
-    load: Course
-    belt: Course
-    normal_load: Course
+    at: int
     keeps_stiffness: Any
 
 
-def packed(varying: Any, planar: bool) -> Any:
-    """Return the table of everything that varies; empty if nothing does."""
-    if not isinstance(varying, Varying):
-        return varying
-    functions = varying.load, varying.belt, varying.normal_load
-    counts = [function.waves.frequency.size for function in functions]
-    ends = np.cumsum([PER_WAVE * count for count in counts]).tolist()
-    every = [part for function in functions[:2] for line in function[1:] for part in (line.real, line.imag)]
-    lines = np.column_stack([*every, *(line.real for line in varying.normal_load[1:])])
-    table = np.concatenate([*(_rows(function.waves) for function in functions), lines.ravel(), varying.edges])
-    load, belt, normal = (
-        Course(end - PER_WAVE * count, count, *(_number(line[0], plane) for line in function[1:]))
-        for end, count, function, plane in zip(ends, counts, functions, (planar, planar, False), strict=True)
-    )
-    whole = Whole(
-        lines=ends[2],
-        edges=ends[2] + lines.size,
-        pieces=len(lines),
-        periods=varying.periods,
-        quickest=varying.quickest,
-        belt_swing=varying.belt_swing,
-    )
-    stiff = (1.0,) if varying.constant_contact else ()
-    return Packed(table, whole, 0.0, load, belt, normal, stiff)
+def packed(varying: Varying, balanced: tuple[complex, complex], drive: float) -> Packed:
+    """Return the table of everything that varies.
+
+    balanced: sine and cosine of the load that the reference motion takes. drive: its frequency.
+    """
+    quickest, press = varying.quickest, varying.normal_load
+    left = _left(varying.load.waves, balanced, drive)
+    waves = varying.load.waves, varying.belt.waves, press.waves, left
+    terms = [each.frequency.size for each in waves]
+    firsts = [HEAD + PER_WAVE * sum(terms[:k]) for k in range(5)]
+    pieces = varying.edges.size - 1
+    edges = firsts[4] + PER_PIECE * pieces
+    table = np.zeros(edges + pieces + 1)
+    table[AT_SHARE : AT_SHARE + STAGES] = 1.0
+    table[POWERS : POWERS + 2 * TERMS] = _powers(drive / quickest)
+    table[PUSHES] = terms[3] > 0 or _has_lines(varying.load)
+    table[PRESSES] = terms[2] > 0 or _has_lines(press)
+    table[REST_FIRST : REST_TERMS + 1] = firsts[3], terms[3]
+    table[LINES : WAVES + 1] = (
+        firsts[4], edges, pieces, varying.periods, quickest, varying.belt_swing, varying.fastest, 0.0, 0.0,
+        firsts[0], terms[0], firsts[1], terms[1], firsts[2], terms[2], sum(terms[:3]),
+    )  # fmt: skip
+    for first, each in zip(firsts[:4], waves, strict=True):
+        _write_rows(table, first, each, quickest, drive)
+    lines = table[firsts[4] : edges].reshape(pieces, PER_PIECE)
+    for k, each in enumerate(
+        (varying.load.lines, varying.load.slopes, varying.belt.lines, varying.belt.slopes)
+    ):
+        lines[:, 2 * k], lines[:, 2 * k + 1] = each.real, each.imag
+    lines[:, 8], lines[:, 9] = press.lines.real, press.slopes.real
+    table[edges:] = varying.edges
+    return Packed(table, 0.0, firsts[4], (1.0,) if varying.constant_contact else ())
 
 
-def _number(value: Any, planar: bool) -> Any:
-    return complex(value) if planar else float(value.real)
+def _has_lines(function: Function) -> bool:
+    return bool(function.lines.any() or function.slopes.any())
 
 
-def _rows(waves: Waves) -> Any:
-    parts = [waves.frequency, waves.sine.real, waves.sine.imag, waves.cosine.real, waves.cosine.imag]
-    return np.column_stack(parts).ravel()
+_NO_LINE, _NO_NUMBER = np.zeros(1, complex), np.zeros(0)
+_NOTHING = Function(Waves(_NO_NUMBER, _NO_NUMBER + 0j, _NO_NUMBER + 0j), _NO_LINE, _NO_LINE)
+NEVER = 1e300
+"""Time of the end of the only piece where nothing has corners."""
+
+
+def of_one_sine(sine: complex, cosine: complex, frequency: float) -> Varying:
+    """Return the numbers of a load that is one sine, or of none, and of nothing else that varies."""
+    load = _NOTHING
+    if sine != 0 or cosine != 0:
+        waves = Waves(np.array([frequency]), np.array([complex(sine)]), np.array([complex(cosine)]))
+        load = load._replace(waves=waves)
+    return Varying(load, _NOTHING, _NOTHING, np.array([0.0, NEVER]), NEVER, frequency, 0.0, False, -1.0)
+
+
+def _write_rows(table: Floats, first: int, waves: Waves, quickest: float, drive: float) -> None:
+    """Write PER_WAVE numbers for each wave."""
+    last = 0
+    for j, (frequency, sine, cosine) in enumerate(zip(*waves, strict=True)):
+        row = table[first + PER_WAVE * j : first + PER_WAVE * (j + 1)]
+        row[:WAVE_POWERS] = frequency, sine.real, sine.imag, cosine.real, cosine.imag
+        row[WAVE_POWERS:TURNS] = _powers(frequency / quickest)
+        multiple = round(frequency / drive)
+        exact = abs(frequency - multiple * drive) <= 1e-15 * frequency and 0 <= multiple - last <= MOST_TURNS
+        row[TURNS] = multiple - last if exact else -1
+        last = multiple if exact else 10**9
+
+
+_ORDERS = np.concatenate([np.arange(0, 2 * TERMS, 2), np.arange(1, 2 * TERMS, 2)])
+_FACTORS = np.array([(-1.0) ** (n // 2) / math.factorial(n) for n in _ORDERS.tolist()])
+
+
+@lru_cache(maxsize=256)  # a curve, and curves of one waveform, share them
+def _powers(ratio: float) -> Floats:
+    """Return the terms of the cosine of ratio*s, then those of its sine [2*TERMS]."""
+    terms: Floats = _FACTORS * ratio**_ORDERS
+    return terms
+
+
+def _left(waves: Waves, balanced: tuple[complex, complex], drive: float) -> Waves:
+    """Return what the reference leaves of the waves of a load, by frequency."""
+    left = {drive: (-balanced[0], -balanced[1])}
+    for frequency, sine, cosine in zip(*waves, strict=True):
+        before = left.get(frequency, (0j, 0j))
+        left[frequency] = before[0] + sine, before[1] + cosine
+    kept = sorted(frequency for frequency, (sine, cosine) in left.items() if sine != 0 or cosine != 0)
+    pairs = [left[frequency] for frequency in kept]
+    return Waves(np.array(kept), *(np.array([pair[k] for pair in pairs], dtype=complex) for k in (0, 1)))

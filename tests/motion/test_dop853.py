@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from frictionlab.compile.decorators import fast, njit
-from frictionlab.motion.steppers.dop853 import State, interpolant, motion_within, stepper
+from frictionlab.motion.steppers.dop853 import State, interpolant, motion_within, stepper, unprepared
 
 
 class Power(NamedTuple):
@@ -20,16 +20,16 @@ class Power(NamedTuple):
 
 
 @fast
-def _power_rates(problem, tau, x, v):
+def _power_rates(problem, _stage, tau, x, v):
     return tau**problem.power - problem.stiffness * x, tau**problem.power
 
 
-_power_step = stepper(_power_rates)
+_power_step = stepper(_power_rates, unprepared)
 
 
 @njit
 def power_step(problem, tau, x, v, h):
-    a, f = _power_rates(problem, tau, x, v)
+    a, f = _power_rates(problem, 0, tau, x, v)
     return _power_step(problem, tau, State(x, v, a, f), h)
 
 
@@ -42,14 +42,20 @@ class Belt(NamedTuple):
 
 
 @fast
-def _belt_rates(problem, tau, x, v):
+def _belt_rates(problem, _stage, tau, x, v):
+    return _belt_rates_at(problem, tau, x, v)
+
+
+@fast
+def _belt_rates_at(problem, tau, x, v):
     w = v - problem.belt
     rub = w / math.sqrt(w.real * w.real + w.imag * w.imag)
     turn = complex(math.cos(tau), math.sin(tau))
     return problem.load * turn - x - 0.2 * v - problem.friction * rub, rub
 
 
-_belt_step, _belt_dense = stepper(_belt_rates), interpolant(_belt_rates)
+_belt_step = stepper(_belt_rates, unprepared)
+_belt_dense = interpolant(_belt_rates, unprepared, _belt_rates_at)
 
 
 @njit
@@ -57,7 +63,7 @@ def belt_run(problem, x, v, end, steps):
     """Position, velocity and friction impulse after so many equal steps."""
     h, friction_impulse = end / steps, 0j
     for i in range(steps):
-        a, f = _belt_rates(problem, i * h, x, v)
+        a, f = _belt_rates_at(problem, i * h, x, v)
         taken = _belt_step(problem, i * h, State(x, v, a, f), h)
         x, v, friction_impulse = taken.x, taken.v, friction_impulse + taken.friction_impulse
     return x, v, friction_impulse
@@ -66,7 +72,7 @@ def belt_run(problem, x, v, end, steps):
 @njit
 def belt_within(problem, x, v, h, share):
     """Position and velocity a share into one step from tau = 0."""
-    a, f = _belt_rates(problem, 0.0, x, v)
+    a, f = _belt_rates_at(problem, 0.0, x, v)
     dense = _belt_dense(problem, 0.0, State(x, v, a, f), h)
     return motion_within(dense, share * h)
 
@@ -74,7 +80,7 @@ def belt_within(problem, x, v, h, share):
 @njit
 def belt_errors(problem, x, v, h):
     """The error estimates of one step of the velocity, of order 5 and 3."""
-    a, f = _belt_rates(problem, 0.0, x, v)
+    a, f = _belt_rates_at(problem, 0.0, x, v)
     taken = _belt_step(problem, 0.0, State(x, v, a, f), h)
     return abs(taken.v_error5), abs(taken.v_error3)
 

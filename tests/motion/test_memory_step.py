@@ -28,6 +28,7 @@ SOFT = fl.LuGre(mu_kinetic=0.3, mu_static=0.5, stiffness=2, damping=0.01, stribe
 def steps(law: Any, body: Any, h: float, many: int, start: Any, zero: Any) -> Any:
     """So many steps from a state, and back into it."""
     work = workspace(law, zero, ())
+    work.share[0] = 1.0
     n = count_of(law)
     for k in range(n):
         work.unit[k], work.size[k] = 1.0, 1e-2
@@ -48,6 +49,7 @@ def steps(law: Any, body: Any, h: float, many: int, start: Any, zero: Any) -> An
 def inside(law: Any, body: Any, h: float, share: float, state: Any, zero: Any) -> Any:
     """The state a share into a step of h, from a state and back into it."""
     work = workspace(law, zero, ())
+    work.share[0] = 1.0
     for k in range(count_of(law)):
         work.unit[k], work.size[k] = 1.0, 1e-2
     for row in range(state.size):

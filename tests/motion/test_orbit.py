@@ -19,7 +19,7 @@ from frictionlab.motion.orbit.read import READ, OrbitPanels, read
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.motion.orbit.recorder import DERIVATIVE, NODES, PER_PANEL, WEIGHTS
 from frictionlab.motion.orbit.sample import sample
-from frictionlab.scene.body import Mass
+from frictionlab.scene.body import Mass, for_kernels
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 
 LAW = Coulomb(mu=MU)
@@ -33,7 +33,7 @@ def columns_of(panels, mass, belt_speed):
 def read_from(orbit, mass, belt_speed):
     """READ by name."""
     panels = OrbitPanels(orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick)
-    numbers = compiled(columns_of)(panels, mass, belt_speed)
+    numbers = compiled(columns_of)(panels, for_kernels(mass), belt_speed)
     return dict(zip(READ, numbers, strict=True))
 
 

@@ -68,7 +68,7 @@ def settings_of(push: Push, steps: int, **changes: Any) -> MarchSettings:
     values = {
         "belt_speed": push.belt_speed, "driven": True, "steps": steps, "span": END, "first": END / steps,
         "slack": 0.5, "reach": END / steps, "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0,
-        "work": 10**9, "window": 50, "room": 0,
+        "work": 10**9, "window": 50, "room": 0, "refined": 1,
     }  # fmt: skip
     return MarchSettings(**(values | changes))
 
@@ -92,7 +92,7 @@ def end_of(stepper: Any, push: Push, steps: int, **changes: Any) -> np.ndarray:
 def reference(push: Push) -> np.ndarray:
     """By another stepper: smooth motion by the eighth-order one with next to no smoothing, jumps by many steps."""
     if push.planar:
-        return end_of(Smoothed(1e-3, smoothing.TANH, 1e-13), push, 100, first=1e-3, slack=1e-9)
+        return end_of(Smoothed(1e-3, smoothing.TANH, 1e-13), push, 100, first=1e-3, slack=1e-9, refined=0)
     return end_of(Moreau(0.5), push, 3_276_800)
 
 

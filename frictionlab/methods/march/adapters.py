@@ -11,11 +11,8 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import embedded, fast, inner
 from frictionlab.compile.dispatch import (
     as_argument,
-    by_contact,
     by_law,
-    by_springs,
     by_stepper,
-    by_variation,
     length,
 )
 from frictionlab.compile.stack import count_of, room
@@ -24,17 +21,14 @@ from frictionlab.motion.contact import (
     friction_of,
     project_to_yield,
     rate_of,
-    resistance,
     resistance_at_share,
 )
 from frictionlab.motion.equation import (
-    START,
     acceleration,
     acceleration_under,
     belt_swing,
     instant_at,
     linear_force,
-    load_share,
     normal_load,
     restoring_force,
     slip,
@@ -110,36 +104,29 @@ class SmoothedFriction(NamedTuple):
 # --- a normal load that changes -----------------------------------------------------------------------------------
 
 
-_share = by_variation(
-    lambda body, pressed: load_share(body, START), lambda body, pressed: pressed / body.normal_load
-)
-"""_share(body, pressed): a normal load in shares of its mean."""
-
-
 @fast
 def in_shares(body: BodyNumbers, pressed: float, mu: Any) -> Any:
     """Friction in shares of the mean normal load, from its coefficient."""
-    return _share(body, pressed) * mu
+    return pressed / body.normal_load * mu
 
 
-bristle_resistance = by_contact(
-    lambda body, law, w, z, pressed: resistance(law, w, z),
-    lambda body, law, w, z, pressed: resistance_at_share(law, w, z, _share(body, pressed)),
-)
-"""bristle_resistance(body, law, w, z, pressed): rate of one bristle, and friction coefficient."""
+@fast
+def _share_of_contact(body: BodyNumbers, pressed: float) -> float:
+    """Return the normal load over its mean, as a contact that keeps its stiffness knows it; 1 for others."""
+    return pressed / body.normal_load if len(body.varying.keeps_stiffness) > 0 else 1.0
 
 
-def _yields_per_load(body: Any, law: Any, z: Any, pressed: float) -> Any:
-    return project_to_yield(law, z)
+@fast
+def bristle_resistance(body: BodyNumbers, law: Any, w: Any, z: Any, pressed: float) -> Any:
+    """Return the rate of one bristle, and the friction coefficient."""
+    return resistance_at_share(law, w, z, _share_of_contact(body, pressed))
 
 
-def _yields_at_share(body: Any, law: Any, z: Any, pressed: float) -> Any:
-    n = _share(body, pressed)
+@fast
+def bristle_within_yield(body: BodyNumbers, law: Any, z: Any, pressed: float) -> Any:
+    """Return the deflection, not beyond yield."""
+    n = _share_of_contact(body, pressed)
     return n * project_to_yield(law, z / n)
-
-
-bristle_within_yield = by_contact(_yields_per_load, _yields_at_share)
-"""bristle_within_yield(body, law, z, pressed): the deflection, not beyond yield."""
 
 
 # --- friction of a stage ------------------------------------------------------------------------------------------
@@ -212,7 +199,7 @@ def _rates_of_the_grid(
 
 
 @embedded
-def _smooth_rates(problem: MarchProblem, tau: float, x: Any, v: Any) -> Any:
+def _smooth_rates(problem: MarchProblem, stage: int, tau: float, x: Any, v: Any) -> Any:
     """Acceleration and smoothed friction at any time."""
     body, now, stepper = problem.body, instant_at(problem.body, tau), problem.stepper
     smooth = SmoothedFriction(problem.law, stepper.width, stepper.shape)
@@ -230,19 +217,13 @@ def _rates_with_a_bristle(problem: MarchProblem, tau: float, x: Any, v: Any, z: 
     return acceleration(body, now, x, v, mu), in_shares(body, pressed, mu), rate
 
 
-_ahead = by_springs(
-    lambda body, x, v, ahead, later: linear_force(body, ahead, later),
-    lambda body, x, v, ahead, later: (
-        restoring_force(body, x, v) + linear_force(slopes_at(body, x, v), ahead - x, later - v)
-    ),
-)
-
-
 @as_argument
 @fast
 def _expanded_force(body: BodyNumbers, x: Any, v: Any, ahead: Any, later: Any) -> Any:
     """The restoring force on another motion, linear about x, v."""
-    return _ahead(body, x, v, ahead, later)
+    if len(body.bends.some) == 0:
+        return linear_force(body, ahead, later)
+    return restoring_force(body, x, v) + linear_force(slopes_at(body, x, v), ahead - x, later - v)
 
 
 @as_argument
@@ -251,7 +232,7 @@ def _slopes_at(body: BodyNumbers, x: Any, v: Any) -> Any:
     return slopes_at(body, x, v)
 
 
-_smooth_step = dop853.stepper(_smooth_rates)
+_smooth_step = dop853.stepper(_smooth_rates, dop853.unprepared)
 
 
 def _by_moreau(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
@@ -269,7 +250,7 @@ def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     """A step whose error decides how long it may be."""
     body, belt_speed = problem.body, problem.belt_speed
     # The slopes at the start are found anew: the last step may have been repeated, or ended at a zero of velocity.
-    a, mu = _smooth_rates(problem, start.tau, start.x, start.v)
+    a, mu = _smooth_rates(problem, 0, start.tau, start.x, start.v)
     end = _smooth_step(problem, start.tau, dop853.State(start.x, start.v, a, mu), h)
     growth = growth_of(body, end, problem.stepper.accuracy)
     before = slip(body, belt_speed, instant_at(body, start.tau), start.v)
@@ -312,7 +293,7 @@ def _on_a_parabola(problem: MarchProblem, part: float, start: StepStart, end: St
 def _by_another_step(problem: MarchProblem, part: float, start: StepStart, end: StepEnd, h: float) -> Any:
     """A step of high order is taken anew to there."""
     between = advance(problem, start, part)
-    _, mu = _smooth_rates(problem, start.tau + part, between.x, between.v)
+    _, mu = _smooth_rates(problem, 0, start.tau + part, between.x, between.v)
     return between.x, between.v, mu
 
 

@@ -13,12 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import embedded, inner
-from frictionlab.compile.dispatch import by_variation, length
+from frictionlab.compile.dispatch import length
 from frictionlab.compile.stack import count_of
 from frictionlab.methods.march.adapters import MarchProblem, advance, note_step
 from frictionlab.motion.equation import in_piece, instant_at, piece_ends, pieces_of, slip
 from frictionlab.motion.orbit.recorder import Track
 from frictionlab.motion.steppers.step import StepEnd, StepStart
+from frictionlab.scene.body import BodyNumbers
 
 NOTHING = np.zeros(1)
 """Of a memory that is none."""
@@ -158,36 +159,24 @@ def steps_in(settings: MarchSettings, lasts: float) -> int:
     return settings.refined * max(1, math.ceil(lasts / coarsest - 1e-9))
 
 
-piece_end = by_variation(
-    lambda body, settings, k: settings.span, lambda body, settings, k: piece_ends(body, k)[1]
-)
-"""piece_end(body, settings, k): when the k-th piece of a lap ends."""
+@inner
+def piece_end(body: BodyNumbers, settings: MarchSettings, k: int) -> float:
+    """Return the time at which the k-th piece of a lap ends."""
+    return settings.span if k == pieces_of(body) - 1 else piece_ends(body, k)[1]
 
 
-def _next_step(body: Any, settings: MarchSettings, lap: Lap, end: float) -> float:
-    return lap.step
-
-
-def _equal_step(body: Any, settings: MarchSettings, lap: Lap, end: float) -> float:
-    if settings.refined == 0:
+@inner
+def piece_step(settings: MarchSettings, lap: Lap, end: float) -> float:
+    """Return the first step of a piece that begins where the lap has come to."""
+    if settings.refined == 0 or not settings.driven:
         return lap.step
     return (end - lap.duration) / steps_in(settings, end - lap.duration)
 
 
-piece_step = by_variation(_next_step, _equal_step)
-"""piece_step(body, settings, lap, end): the first step of a piece that begins where the lap has come to."""
-
-
-def _same_trace(body: Any, belt_speed: float, lap: Lap) -> SlipTrace:
-    return lap.trace
-
-
-def _trace_past_corner(body: Any, belt_speed: float, lap: Lap) -> SlipTrace:
+@inner
+def past_corner(body: BodyNumbers, belt_speed: float, lap: Lap) -> SlipTrace:
+    """Return the trace where a piece begins."""
     return slip_trace(lap.trace, slip(body, belt_speed, instant_at(body, lap.duration), lap.v))
-
-
-past_corner = by_variation(_same_trace, _trace_past_corner)
-"""past_corner(body, belt_speed, lap): the trace where a piece begins."""
 
 
 @inner
@@ -229,7 +218,7 @@ def march_piece(problem: MarchProblem, settings: MarchSettings, lap: Lap, end: f
     body, belt_speed, driven = problem.body, problem.belt_speed, settings.driven
     x, v, tally, tau, steps, back = lap.x, lap.v, lap.tally, lap.duration, lap.steps, False
     h, trace, k = (
-        piece_step(body, settings, lap, end),
+        piece_step(settings, lap, end),
         past_corner(body, belt_speed, lap),
         steps if driven else 0,
     )

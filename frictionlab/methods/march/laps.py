@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_law, by_variation
+from frictionlab.compile.dispatch import by_law
 from frictionlab.compile.stack import items_of, room
 from frictionlab.methods.march.adapters import MarchProblem
 from frictionlab.methods.march.lap import (
@@ -17,6 +17,7 @@ from frictionlab.methods.march.lap import (
     MarchSettings,
     SlipTrace,
     march_lap,
+    piece_end,
     steps_in,
 )
 from frictionlab.motion.equation import (
@@ -32,7 +33,7 @@ from frictionlab.motion.equation import (
     runs_away,
 )
 from frictionlab.motion.orbit.recorder import Track, track_of
-from frictionlab.motion.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart, squared
+from frictionlab.motion.steppers.step import BELT, COLUMNS, GRID_NODES, LOAD, NORMAL_LOAD, StepStart, squared
 from frictionlab.scene.body import BodyNumbers
 
 CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST, TOO_STIFF = range(8)
@@ -89,34 +90,26 @@ def _fill_node(body: BodyNumbers, belt_speed: float, tau: float, grid: Any, j: i
     grid[COLUMNS * j + BELT] = belt_velocity(body, belt_speed, now)
 
 
-def _grid_of_half_steps(body: BodyNumbers, settings: MarchSettings, x: Any) -> Any:
-    steps = settings.steps
-    grid = np.full(COLUMNS * (2 * steps + 1), 0.0 * x)
-    for j in range(2 * steps + 1):
-        _fill_node(body, settings.belt_speed, j * (0.5 * settings.span / steps), grid, j)
-    return grid
-
-
-def _grid_of_pieces(body: BodyNumbers, settings: MarchSettings, x: Any) -> Any:
-    gridded, total = settings.steps > 1, 1
+@inner
+def grid_of(body: BodyNumbers, settings: MarchSettings, x: Any) -> Any:
+    """Return what acts on a body at x at the nodes of a lap: computed once, for laps are alike."""
+    gridded, total = settings.driven and settings.refined > 0, 1
     for k in range(pieces_of(body) if gridded else 0):
-        begin, end = piece_ends(body, k)
-        total += steps_in(settings, end - begin)
-    grid, j = np.full(3 * COLUMNS * total, 0.0 * x), 0
+        total += steps_in(settings, piece_end(body, settings, k) - piece_ends(body, k)[0])
+    grid, j = np.full(GRID_NODES * COLUMNS * total, 0.0 * x), 0
+    if not gridded:  # nothing varies, or the stepper looks for itself
+        for part in range(GRID_NODES):
+            _fill_node(body, settings.belt_speed, 0.0, grid, part)
     for k in range(pieces_of(body) if gridded else 0):
         # From the piece itself, ends included: a neighbour may have other values there.
-        piece, (begin, end) = in_piece(body, k), piece_ends(body, k)
+        piece, begin, end = in_piece(body, k), piece_ends(body, k)[0], piece_end(body, settings, k)
         half_steps = 2 * steps_in(settings, end - begin)
         for i in range(half_steps // 2):
-            for part in range(3):
+            for part in range(GRID_NODES):
                 tau = begin + (end - begin) * ((2 * i + part) / half_steps)
                 _fill_node(piece, settings.belt_speed, tau, grid, j)
                 j += 1
     return grid
-
-
-grid_of = by_variation(_grid_of_half_steps, _grid_of_pieces)
-"""grid_of(body, settings, x): what acts on a body at x at the nodes of a lap: computed once, for laps are alike."""
 
 
 # --- laps until the motion repeats --------------------------------------------------------------------------------

@@ -36,7 +36,7 @@ from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.under_way import once
 from frictionlab.motion.equation import mean_friction, quickest_of, span
 from frictionlab.motion.orbit.record import Orbit
-from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
+from frictionlab.scene.body import Mass, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.values.quantities import Floats
 
@@ -83,7 +83,7 @@ class MarchRun:
         self.straight = straight = along_the_belt(scene, law) and not starts_across
         # a lap is a period of everything that changes in time: so many of the drive
         self.periods = 1.0 if scene.is_harmonic else float(scene.periods)
-        planar = in_the_plane(for_kernels(self.mass), self.periods)
+        planar = in_the_plane(self.mass, self.periods)
         self.body = on_the_line(self.mass, self.periods) if straight else planar
         self.lightest, _ = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine

@@ -30,7 +30,7 @@ from frictionlab.motion.maps.memory_state import (
     unpack_memory,
 )
 from frictionlab.motion.maps.path import path_map
-from frictionlab.motion.maps.rates import MEMORY, contact_kind, workspace
+from frictionlab.motion.maps.rates import MEMORY, workspace
 from frictionlab.motion.maps.sliding import Mapped, sliding_map
 from frictionlab.motion.maps.stick import periods_at_rest
 from frictionlab.scene.body import BodyNumbers
@@ -121,7 +121,7 @@ def _nothing_hidden(law: Any, body: BodyNumbers, zero: Any) -> Any:
 
 def _hidden_error_of_memory(law: Any, body: BodyNumbers, zero: Any) -> Any:
     """Return the error of a yield within a step, and that of the sum of the errors of all steps."""
-    work, most = workspace(law, zero, contact_kind(body)), 0.0
+    work, most = workspace(law, zero, body.varying.keeps_stiffness), 0.0
     measure_scales(law, body, work, zero)
     if law.turning > 0.0:
         for k in range(count_of(law)):
@@ -135,7 +135,7 @@ normal load: a constant part, and a part that is divided by the span."""
 
 
 def _smallest_unit(law: Any, body: BodyNumbers, zero: Any) -> float:
-    work, least = workspace(law, zero, contact_kind(body)), 1e300
+    work, least = workspace(law, zero, body.varying.keeps_stiffness), 1e300
     measure_scales(law, body, work, zero)
     for k in range(count_of(law)):
         least = min(least, work.unit[k])
@@ -160,7 +160,7 @@ def _image_without_memory(case: Case, state: Any, residual: Any, stepping: Stepp
 def _image_with_memory(case: Case, state: Any, residual: Any, stepping: Stepping) -> Mapped:
     law, body, zero = case.law, case.body, case.zero
     y, u = unpack(body, state, zero)
-    work = workspace(law, zero, contact_kind(body))
+    work = workspace(law, zero, body.varying.keeps_stiffness)
     measure_scales(law, body, work, zero)
     unpack_memory(law, body, work, state, zero)
     cut_back(law, work)
@@ -177,14 +177,15 @@ def image_by_path(case: Case, state: Any, residual: Any, stepping: Stepping) -> 
     """``paced_image`` of a bristle on the line whose deflection the path of the slip tells."""
     law, body, zero = case.law, case.body, case.zero
     y, u = unpack(body, state, zero)
-    work = workspace(law, zero, contact_kind(body))
+    work = workspace(law, zero, body.varying.keeps_stiffness)
     measure_scales(law, body, work, zero)
     unpack_memory(law, body, work, state, zero)
     z = work.start[MEMORY]
     image = path_map(case, y, u, z, stepping)
-    pack(body, residual, image.y - y, image.u - u)
+    there = (zero, zero) if body.prescribed else (image.y, image.u)  # of a motion that only measures errors
+    pack(body, residual, there[0] - y, there[1] - u)
     residual[2] = work.unit[0] * (image.z - z)
-    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
+    return Mapped(there[0], there[1], image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
 
 
 paced_image = by_law(_image_without_memory, _image_with_memory, _image_with_memory)
@@ -204,7 +205,7 @@ rest_of = by_law(periods_at_rest, _rest_with_a_bristle, _rest_with_a_bristle)
 
 
 def _remember_a_deflection(law: Any, body: BodyNumbers, state: Any, z: Any) -> None:
-    work = workspace(law, z, contact_kind(body))
+    work = workspace(law, z, body.varying.keeps_stiffness)
     measure_scales(law, body, work, z)
     work.start[MEMORY] = z
     pack_memory(law, body, work, state, z)
@@ -212,7 +213,7 @@ def _remember_a_deflection(law: Any, body: BodyNumbers, state: Any, z: Any) -> N
 
 def _remember_sliding(law: Any, body: BodyNumbers, state: Any, z: Any) -> None:
     """The memory of steady sliding at slip velocity z."""
-    work = workspace(law, z, contact_kind(body))
+    work = workspace(law, z, body.varying.keeps_stiffness)
     measure_scales(law, body, work, z)
     remember_sliding(law, body, work, z)
     pack_memory(law, body, work, state, z)

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.motion.equation import START, belt_path, belt_velocity, instant_at, load, normal_load, span
+from frictionlab.motion.equation import START, belt_advance, instant_at, load, normal_load, span
 from frictionlab.motion.maps.case import Case
 
 LOADS = 512
@@ -84,9 +84,9 @@ def plateau(case: Case) -> Plateau:
     # both: of the loads' shape, which is the same from either side
     bend = body.frequency**2 * abs(((touched - held).conjugate() * touched).real) / limit
     stiffness = body.stiffness_mean + body.stiffness_split
-    beyond = 0.5 * math.sqrt(bend * stiffness * abs(belt_path(body, case.belt_speed, 0.0, period)) / 1.125)
+    beyond = 0.5 * math.sqrt(bend * stiffness * abs(belt_advance(body, case.belt_speed)) / 1.125)
     held = side * complex(held.real + beyond, held.imag)
-    drag = (body.damping_mean + body.damping_split) * belt_velocity(body, case.belt_speed, START)
+    drag = (body.damping_mean + body.damping_split) * case.belt_speed
     x = complex((held.real - drag) / stiffness, held.imag / (body.stiffness_mean - body.stiffness_split))
     return Plateau(True, x, _calmest(case, held))
 

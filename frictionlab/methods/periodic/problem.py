@@ -50,10 +50,11 @@ from frictionlab.methods.under_way import once
 from frictionlab.motion.equation import runs_away, swing_of
 from frictionlab.motion.orbit.record import Orbits
 from frictionlab.motion.orbit.recorder import WEIGHTS, Track, track_of
-from frictionlab.scene.body import BodyNumbers, Mass, for_kernels, in_the_plane, on_the_line
+from frictionlab.scene.body import BodyNumbers, Mass, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
+from frictionlab.scene.varying import FASTEST, FREE_VELOCITY, FREE_X
 from frictionlab.theory.linear import friction_free_response, velocity_scale
 from frictionlab.theory.rest import falls_slower_than_dashpots, falls_slowly, is_convergent, resonates_once
 from frictionlab.theory.sliding_stability import SHORT, slides_saturated
@@ -108,8 +109,9 @@ def _with_free_state(scene: Scene, law: Any, body: BodyNumbers) -> BodyNumbers:
         return body
     x, v = (float(value[0]) for value in free[0].at(np.zeros(1), np.zeros(1, np.int64)))
     fastest = max(velocity_scale(scene.model_copy(update={"belt_speed": way})) for way in (1.0, -1.0))
-    whole = body.varying.whole._replace(fastest=fastest, x=x, velocity=v)
-    return body._replace(varying=body.varying._replace(whole=whole))
+    table = body.varying.table.copy()
+    table[[FASTEST, FREE_X, FREE_VELOCITY]] = fastest, x, v
+    return body._replace(varying=body.varying._replace(table=table))
 
 
 def _largest(signal: Signal, period: float) -> float:
@@ -164,18 +166,18 @@ class PeriodicProblem:
         if along_the_belt(scene, law):
             self.body, self.zero = on_the_line(self.mass), 0.0
         else:
-            self.body, self.zero = in_the_plane(for_kernels(self.mass)), 0j
+            self.body, self.zero = in_the_plane(self.mass), 0j
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.undamped = undamped(scene)
         self.gap = _least_gap(self.mass, self.common) if law.count() == 0 else LEAST_GAP
         self.body = self.body._replace(periods=self.common)
         constant = (
-            not (self.body.bends or isinstance(self.zero, complex))
+            not (self.mass.bends or isinstance(self.zero, complex))
             and scene.signals().normal_load == Signal()
             and slides_saturated(law)
         )
-        if constant and self.body.varying:
+        if constant and self.mass.varying:
             self.body = _with_free_state(scene, law, self.body)
         self.maps = table_of_maps(law, self.body)
         contracts, planar = is_convergent(scene, law), isinstance(self.zero, complex)
@@ -194,7 +196,7 @@ class PeriodicProblem:
     @property
     def by_implicit_steps(self) -> Self | None:
         """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
-        if not (isinstance(self.zero, complex) and self.goal.contracts) or self.body.varying:
+        if not (isinstance(self.zero, complex) and self.goal.contracts) or self.mass.varying:
             return None
         other = copy.copy(self)
         other.kernel = answer_near_rest
@@ -226,12 +228,17 @@ class PeriodicProblem:
     def in_lanes(self, points: int) -> bool:
         """Whether eight are answered at once: motions in the plane that converge, without memory, under loads of one
         sine, of a curve that has more than a few points."""
-        planar = isinstance(self.zero, complex) and self.kernel is answer_curve and not self.body.varying
+        planar = isinstance(self.zero, complex) and self.kernel is answer_curve and not self.mass.varying
         return points >= FEWEST_IN_LANES and planar and self.goal.contracts and takes_lanes(self.law)
+
+    @property
+    def body_in_lanes(self) -> BodyNumbers:
+        """Return the body without a table: one sine is all that lanes know."""
+        return self.body._replace(varying=())
 
     def _close_in_lanes(self, speeds: Floats, periods: float) -> tuple[Curve, float]:
         """The orbits at these belt speeds; those that lanes leave by the search for one."""
-        body = self.body._replace(periods=float(periods))
+        body = self.body_in_lanes._replace(periods=float(periods))
         found, seconds = KernelCall(answer_lanes, self.law).timed(body, speeds, self.goal)
         left = np.flatnonzero(found.fate != CLOSED_ORBIT).tolist()
         if left:
@@ -266,7 +273,7 @@ class PeriodicProblem:
             return self._recorded(places, scenes, known, periods)
         accuracy = interpreted(recorded_accuracy)(self.body.normal_load, self.goal)
         call = KernelCall(record_in_lanes, self.law)
-        track, ends = call(self.body, belt_speeds_of(scenes)[places], known, accuracy)
+        track, ends = call(self.body_in_lanes, belt_speeds_of(scenes)[places], known, accuracy)
         found = _orbits_at(places, track, ends, len(scenes))
         left = np.diff(ends, prepend=0) == 0
         others = [i for i, is_left in zip(places, left, strict=True) if is_left]
@@ -285,7 +292,7 @@ class PeriodicProblem:
         found = np.full(len(scenes), np.nan)
         if self.in_lanes(len(places)):
             call = KernelCall(differentiate_in_lanes, self.law)
-            matrices = call(self.body, belt_speeds_of(scenes)[places], known)
+            matrices = call(self.body_in_lanes, belt_speeds_of(scenes)[places], known)
             regular = ~np.isnan(matrices).any(axis=(1, 2))
             found[np.array(places)[regular]] = largest_modulus(matrices[regular])
             places, known = [i for i in places if math.isnan(found[i])], known[~regular]

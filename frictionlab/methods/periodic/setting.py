@@ -244,7 +244,8 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
 
     @inner
     def maps_of(law: Any, body: BodyNumbers) -> Any:
-        on = LawOnBody(law, bare(body))
+        table = body.varying.table.copy()  # steps write into it
+        on = LawOnBody(law, bare(body, table))
         zero = case_of(law, body, 0.0).zero
         room = np.empty(bytes_of(on), np.uint8)
         at = addresses(on)
@@ -253,7 +254,7 @@ def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
         remembers = _has_memory(law)
         size = size_of(law, zero)
         scalars = Scalars(2 * dimension(zero), size, unit_of_scalars(law, on.body, zero))
-        return room, Maps(
+        return (room, table), Maps(
             written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6],
             size, scalars, remembers, dimension(zero) == 2, scales, fastest_slip(on.body),
             of_memory if remembers else of_sliding,
@@ -273,7 +274,7 @@ maps_of, maps_by_path = (
 def table_of_maps(law: FrictionLaw, body: BodyNumbers) -> MadeByKernel:
     """Return the table of the maps of a law on a body, for other kernels to call."""
     planar = isinstance(body.reference_sine, complex)
-    by_path = map_kind(law, planar) == "exact path" and not getattr(body.varying, "keeps_stiffness", ())
+    by_path = map_kind(law, planar) == "exact path" and len(body.varying.keeps_stiffness) == 0
     return MadeByKernel(maps_by_path if by_path else maps_of, law, body)
 
 

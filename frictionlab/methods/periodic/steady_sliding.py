@@ -20,7 +20,7 @@ from frictionlab.motion.equation import equilibrium, fastest_slip, free_state
 from frictionlab.motion.linalg import norm, subtract
 from frictionlab.motion.maps.case import Case
 from frictionlab.motion.maps.memory_state import measure_scales, unpack_memory
-from frictionlab.motion.maps.rates import MEMORY, contact_kind, workspace
+from frictionlab.motion.maps.rates import MEMORY, workspace
 from frictionlab.scene.body import BodyNumbers
 
 NEAR = 1e-3
@@ -75,7 +75,7 @@ def _creep_on_the_line(case: Case, state: Any, zero: float) -> float:
     law, body, belt_speed, _like = case
     stiffness = body.stiffness_mean + body.stiffness_split
     y, u = unpack(body, state, zero)
-    work = workspace(law, zero, contact_kind(body))
+    work = workspace(law, zero, body.varying.keeps_stiffness)
     measure_scales(law, body, work, zero)
     unpack_memory(law, body, work, state, zero)
     z, nudge, fastest = work.start[MEMORY], 1e-3 * law.largest_deflection(), -2.0 * belt_speed

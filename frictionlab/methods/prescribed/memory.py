@@ -24,7 +24,7 @@ from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import End, Orbit
 from frictionlab.scene.body import BodyNumbers, Motion
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.varying import packed
+from frictionlab.scene.varying import Packed, of_one_sine, packed
 from frictionlab.theory.rest import friction_at_rest, largest_spring_force
 from frictionlab.values.quantities import EPSILON, Floats
 
@@ -201,8 +201,8 @@ def driven(motion: Motion, zero: complex) -> BodyNumbers:
     A sine is the reference motion of the body. For any other slip the body stays at rest, and the belt moves
     with the opposite velocity.
     """
-    omega, across, varying = motion.frequency, motion.transverse_velocity, _moved_belt(motion.varying, zero)
-    share = 0.0 if varying else 1.0 / omega
+    omega, across, varying = motion.frequency, motion.transverse_velocity, _moved_belt(motion)
+    share = 0.0 if motion.varying else 1.0 / omega
     sine = share * complex(motion.velocity.imag, across.imag)
     cosine = -share * complex(motion.velocity.real, across.real)
     parts: Any = (sine, cosine, 0j) if isinstance(zero, complex) else (sine.real, cosine.real, 0.0)
@@ -219,15 +219,15 @@ def driven(motion: Motion, zero: complex) -> BodyNumbers:
         balanced_cosine=parts[2],
         reference_sine=parts[0],
         reference_cosine=parts[1],
-        periods=varying.whole.periods if varying else 1.0,
+        periods=motion.varying.periods if motion.varying else 1.0,
         prescribed=True,
         varying=varying,
     )
 
 
-def _moved_belt(varying: Any, zero: complex) -> Any:
-    """Return the time-varying parts of a motion with the motion of the belt in place of that of the body."""
-    if not varying:
-        return varying
-    moved = varying._replace(belt=varying.belt.scaled(-1.0))
-    return packed(moved, isinstance(zero, complex))
+def _moved_belt(motion: Motion) -> Packed:
+    """Return what varies with the motion of the belt in place of that of the body; nothing for one sine."""
+    moved = of_one_sine(0j, 0j, motion.frequency)
+    if motion.varying:
+        moved = motion.varying._replace(belt=motion.varying.belt.scaled(-1.0))
+    return packed(moved, (0j, 0j), motion.frequency)

@@ -16,7 +16,6 @@ from frictionlab.methods.base import PROVED, TESTED, Answers, Ledger, Status
 from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.memory import MemoryPoint
-from frictionlab.methods.prescribed.varying_legs import LegsPoint
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip
 from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
@@ -87,7 +86,7 @@ def _friction_on(orbit: Orbit, tau: Floats) -> Floats:
     return np.asarray((weights * orbit.friction.real[inside, None, :]).sum(axis=2))
 
 
-Point = VaryingPoint | BristlePoint | AxesPoint | LegsPoint | MemoryPoint
+Point = VaryingPoint | BristlePoint | AxesPoint | MemoryPoint
 
 POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
     "none": lambda scene, law, _tolerance: VaryingPoint(scene, law),
@@ -102,10 +101,8 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
     line = scene.load_along_belt_only
     if not line and law.planar_form() == "per-axis":
         return AxesPoint(scene, lambda axis: _bristle_point(axis, law, tolerance))
-    # in a contact that keeps its stiffness, deflections change with the normal load, too
-    if not line or not law.exact_path() or scene.constant_contact:
-        return MemoryPoint(scene, law, tolerance)
-    return BristlePoint(scene, law) if scene.is_harmonic else LegsPoint(scene, law)
+    by_legs = line and scene.is_harmonic and law.exact_path()
+    return BristlePoint(scene, law) if by_legs else MemoryPoint(scene, law, tolerance)
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:
@@ -117,7 +114,7 @@ def _told_uniqueness(row: Point) -> str:
 
     Of bristles nothing is asked: the deflection that repeats is looked for as if there were one.
     """
-    if row.status != "ok" or isinstance(row, BristlePoint | LegsPoint | AxesPoint):
+    if row.status != "ok" or isinstance(row, BristlePoint | AxesPoint):
         return ""
     if isinstance(row, MemoryPoint):
         row.reason = f"{row.reason}; {row.tested}" if row.reason else row.tested

@@ -10,23 +10,21 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
+from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.motion.contact import friction_of
 from frictionlab.motion.equation import (
     Flow,
     Instant,
-    belt_acceleration,
-    belt_jerk,
+    deviation_slip_rate,
     instant_near,
     load_share,
     normal_load_rate,
-    reference_velocity,
+    reference_jerk,
     restoring_force,
     swing_of,
     unbalanced_rate,
 )
-from frictionlab.motion.events import reference_acceleration
 from frictionlab.motion.linalg import (
     add,
     apply,
@@ -273,8 +271,7 @@ def _swell(body: BodyNumbers, now: Instant) -> float:
 def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) -> None:
     """Fill the slope in time at constant deviation: loads and slip change; rub: friction coefficient."""
     body, n = flow.body, count_of(flow.law)
-    turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
-    turn = turn + 0.0 * zero
+    turn = deviation_slip_rate(flow, now, 0.0 * zero)
     load, pressed = unbalanced_rate(body, now), load_on(body, now)
     friction = apply(block(work.jacobian, 3 * n, zero), turn)
     work.slope[Y], work.slope[U] = 0.0 * zero, load - pressed * friction - _swell(body, now) * rub
@@ -288,10 +285,8 @@ def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, zero: An
 def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, zero: Any) -> None:
     """Fill the slope in time at constant slip: loads and deviation change."""
     body = flow.body
-    turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
-    turn = turn + 0.0 * zero
-    jerk = -(body.frequency**2) * reference_velocity(body, now.sine, now.cosine)
-    jerk = jerk - belt_jerk(body, flow.belt_speed, now)
+    turn = deviation_slip_rate(flow, now, 0.0 * zero)
+    jerk = reference_jerk(flow, now)
     work.slope[Y], work.slope[IMPULSE] = -turn, (normal_load_rate(body, now) / body.normal_load) * rub
     load = unbalanced_rate(body, now) - _swell(body, now) * rub
     work.slope[U] = load + jerk + restoring_force(springs_at(flow, work), 0.0 * turn, turn)
@@ -328,13 +323,6 @@ def _by_share(work: Work, flow: Flow, now: Instant, w: Any, zero: Any) -> None:
     work.slope[IMPULSE] = work.slope[IMPULSE] + load_share(body, now) * more
 
 
-_slope_of_share = by_contact(
-    # the contact follows the load
-    lambda work, flow, now, w, zero: None,
-    _by_share,
-)
-
-
 @inner
 def linearize(flow: Flow, tau: float, work: Work, zero: Any) -> None:
     """Fill ``work.jacobian`` and the slopes in time at ``work.start``."""
@@ -349,4 +337,5 @@ def linearize(flow: Flow, tau: float, work: Work, zero: Any) -> None:
     for k in range(n):
         _by_memory(flow, w, k, work, zero)
     _slope(flow, now, rub, work, zero)
-    _slope_of_share(work, flow, now, w, zero)
+    if len(work.keeps_stiffness) > 0:
+        _by_share(work, flow, now, w, zero)

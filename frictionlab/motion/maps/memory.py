@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
+from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.motion.equation import (
     Flow,
@@ -99,8 +99,9 @@ def _while_into(part: float, flow: Flow, h: float, work: Work, zero: Any) -> Any
     within_step(flow, part / h, work)
     y, u = work.stage[Y], work.stage[U]
     fill_rates(flow, now, work, zero)
-    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
-    return x, velocity_held(flow, now, u), work.rates[IMPULSE]
+    at = instant_at(body, flow.anchor + part)
+    x = y + body.reference_sine * at.sine + body.reference_cosine * at.cosine
+    return x, velocity_held(flow, at, u), work.rates[IMPULSE]
 
 
 _note = panel_writer(_while_into)
@@ -280,7 +281,7 @@ def follow(flow: Flow, end: float, stepping: Stepping, work: Work, zero: Any) ->
     accuracy, track, pace = stepping.accuracy, stepping.track, stepping.pace
     friction = usual_friction(law, body)
     longest = longest_step(body, friction, accuracy)
-    free = is_free(body, zero)
+    free = is_free(body)
     began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
     node, h, steps = _depart(flow, True, work, zero), 0.1 * longest, 0
     closest = length(node.w)
@@ -356,22 +357,17 @@ def repeat(flow: Flow, end: float, first: int, stepping: Stepping, work: Work, z
 
 
 @inner
-def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
-    """Keep each deflection while its share of the new load changes; one beyond yield springs back at once."""
+def _over_jump(work: Work, law: Any, before: float, after: float) -> None:
+    """Carry the memory over a corner where the normal load over its mean changes.
+
+    A contact that keeps its stiffness keeps each deflection, whose share of the new load is another; one beyond
+    yield springs back at once.
+    """
     for k in range(count_of(law)):
         z = (before / after) * work.start[MEMORY + k]
         far = length(z)
         beyond = work.radius[k] > 0.0 and far > work.radius[k]
         work.start[MEMORY + k] = (work.radius[k] / far) * z if beyond else z
-
-
-_over_jump = by_contact(
-    # a load does not change a deflection
-    lambda work, law, before, after: None,
-    _per_new_share,
-)
-"""_over_jump(work, law, before, after): carry the memory over a corner where the normal load over its mean
-changes from ``before`` to ``after``."""
 
 
 @inner
@@ -400,17 +396,20 @@ def memory_map(case: Case, y: Any, u: Any, work: Work, stepping: Stepping) -> Ma
         here, (tau, end) = case_in_piece(case, k), piece_ends(body, k)
         # beside scalars a state holds slip, which jumps where the belt's velocity does
         start = anchored(law, here.body, case.belt_speed, 1.0, tau)
-        work.start[U] = held_velocity(start, instant_at(body, tau), u)
+        work.start[U] = held_velocity(start, instant_near(start, tau), u)
         flow = _flow_of(here, tau, work)
         if stepping.repeats:
             closest, steps = 0.0, repeat(flow, end, steps, stepping, work, zero)
         else:
             near, taken = follow(flow, end, stepping, work, zero)
             closest, steps = min(closest, near), steps + taken if taken >= 0 else -1
-        u = deviation_held(start, instant_at(body, end), work.start[U])
+        ended = anchored(law, here.body, case.belt_speed, 1.0, end)
+        u = deviation_held(ended, instant_near(ended, end), work.start[U])
         if steps < 0:
             break
         # the last piece ends where the first of the next span begins
+        if len(body.varying.keeps_stiffness) == 0:
+            continue
         last = k == pieces_of(body) - 1
         after = _share_at(case, 0, 0.0) if last else _share_at(case, k + 1, end)
         _over_jump(work, law, _share_at(case, k, end), after)

@@ -232,7 +232,8 @@ _measure_sizes = by_law(_measure_bristle, _measure_bristle, _measure_deflections
 
 @inner
 def measure_scales(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
-    """Fill size in steady sliding, unit in the norm of energy and corners of each number."""
+    """Fill size in steady sliding, unit in the norm of energy and corners of each number, and the mean load."""
+    work.share[0] = 1.0
     _measure_sizes(law, body, work, zero)
     measure_yield(law, work, zero)
 

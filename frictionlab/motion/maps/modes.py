@@ -13,9 +13,9 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
+from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
-from frictionlab.motion.equation import Flow, instant_near, swing_of
+from frictionlab.motion.equation import Flow, deviation_slip_rate, instant_near, swing_of
 from frictionlab.motion.maps.rates import (
     FOLLOWS,
     MEMORY,
@@ -68,15 +68,10 @@ def _unloaded(k: int, a: Any, work: Work, w: Any) -> Guard:
     return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
 
 
-_unloaded_on_the_line = by_contact(
-    lambda work, k, a, w: Guard(k, OPEN, 0.0),
-    # a growing load may unload a yielding deflection before slip reverses
-    lambda work, k, a, w: _unloaded(k, a, work, w),
-)
-
 _unloading = by_dimension(
-    # on the line it is the slip's reversal that unloads, where the contact follows the load
-    lambda k, a, work, w: _unloaded_on_the_line(work, k, a, w),
+    # on the line it is the slip's reversal that unloads; in a contact that keeps its stiffness a growing load may
+    # unload a yielding deflection before that
+    lambda k, a, work, w: _unloaded(k, a, work, w) if len(work.keeps_stiffness) > 0 else Guard(k, OPEN, 0.0),
     lambda k, a, work, w: _unloaded(k, a, work, w),
 )
 
@@ -153,7 +148,9 @@ def rates_at_end(flow: Flow, tau: float, work: Work, zero: Any) -> Any:
     """Return slip and its rate at ``work.end``, the time tau; leave the memory there in ``work.memory``."""
     for row in range(rows_of(flow)):
         work.stage[row] = work.end[row]
-    return fill_rates(flow, instant_near(flow, tau), work, zero)
+    now = instant_near(flow, tau)
+    w, a = fill_rates(flow, now, work, zero)
+    return w, deviation_slip_rate(flow, now, a)
 
 
 def _begin_smoothly(flow: Flow, a: Any, w: Any, work: Work) -> None:
@@ -236,20 +233,14 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, zer
     return high
 
 
-_unloads_by_reversal = by_contact(
-    lambda work: True,
-    # under a falling load a deflection may go on yielding although slip reverses
-    lambda work: False,
-)
-
-
 @inner
 def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
     """Change every mode whose guard has been passed at ``work.memory``, and return the side of slip."""
     n = count_of(flow.law)
     reverses = guard_of(flow, n, w, a, work).value <= 0.0
-    # slip that reverses on the line unloads every deflection at once, that meets its limit just now, too
-    unloads = reverses and _unloads_by_reversal(work)
+    # slip that reverses on the line unloads every deflection at once, that meets its limit just now, too; under a
+    # falling load one of constant stiffness may go on yielding
+    unloads = reverses and len(work.keeps_stiffness) == 0
     for k in range(n):
         passed = guard_of(flow, k, w, a, work).value <= 0.0
         if work.mode[k] == YIELDS and (passed or unloads):

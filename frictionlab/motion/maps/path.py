@@ -12,13 +12,19 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, fast_embedded, inner
+from frictionlab.compile.dispatch import by_nearness
 from frictionlab.motion.equation import (
-    Instant,
     belt_path,
+    belt_swing,
     deviation_acceleration,
     deviation_slip,
+    expand_about,
+    expand_places,
     instant_near,
+    instant_of_stage,
     load_share,
+    note_instants,
+    note_places,
     piece_ends,
     pieces_of,
     reference_position,
@@ -26,12 +32,14 @@ from frictionlab.motion.equation import (
     runs_away,
     slip_at,
     slip_rate,
+    turned,
 )
 from frictionlab.motion.events import slip_events
 from frictionlab.motion.maps.case import Case, Pace, Stepping, case_in_piece, keep_step
 from frictionlab.motion.maps.sliding import MOST_STEPS
 from frictionlab.motion.orbit.recorder import panel_writer
 from frictionlab.motion.steppers.dop853 import (
+    LAST_STAGE,
     Dense,
     State,
     interpolant,
@@ -39,16 +47,22 @@ from frictionlab.motion.steppers.dop853 import (
     stepper,
 )
 from frictionlab.motion.steppers.step import growth_of, longest_step, wary_growth_of
+from frictionlab.motion.waves import polynomial
 from frictionlab.scene.body import BodyNumbers
+from frictionlab.scene.varying import PLACE
 
 
 class LegStart(NamedTuple):
-    """Start of a leg: deflection, position of the deviation and of the reference, and time."""
+    """Start of a leg: deflection, position of the deviation and of the reference, and time.
+
+    swung: way that the reference slid from there to the anchor.
+    """
 
     z: float
     y: float
     tau: float
     reference: float
+    swung: float
 
 
 class Leg(NamedTuple):
@@ -62,6 +76,7 @@ class Leg(NamedTuple):
     sine: float
     cosine: float
     start: LegStart
+    moves: float  # 0 if the motion is prescribed, else 1
 
 
 class Carried(NamedTuple):
@@ -77,39 +92,87 @@ class Carried(NamedTuple):
 
 @inner
 def _anchored(leg: Leg, tau: float) -> Leg:
-    angle = leg.body.frequency * tau
+    body, angle = leg.body, leg.body.frequency * tau
     sine, cosine = math.sin(angle), math.cos(angle)
-    return Leg(leg.law, leg.body, leg.belt_speed, leg.side, tau, sine, cosine, leg.start)
+    z, y, begin, reference, _ = leg.start
+    swung = body.reference_sine * sine + body.reference_cosine * cosine - reference
+    if belt_swing(body) > 0.0:
+        swung = swung - belt_path(body, leg.belt_speed, begin, tau)
+    else:
+        swung = swung - leg.belt_speed * (tau - begin)
+    expand_about(body, leg.belt_speed, tau, sine, cosine)
+    expand_places(body)
+    start = LegStart(z, y, begin, reference, swung)
+    return Leg(leg.law, body, leg.belt_speed, leg.side, tau, sine, cosine, start, leg.moves)
 
 
 @inner
 def _leg(case: Case, side: float, tau: float, y: float, z: float) -> Leg:
-    start, angle = LegStart(z, y, tau, reference_position(case.body, tau)), case.body.frequency * tau
-    sine, cosine = math.sin(angle), math.cos(angle)
-    return Leg(case.law, case.body, case.belt_speed, side, tau, sine, cosine, start)
+    start = LegStart(z, y, tau, reference_position(case.body, tau), 0.0)
+    moves = 0.0 if case.body.prescribed else 1.0
+    return _anchored(Leg(case.law, case.body, case.belt_speed, side, tau, 0.0, 1.0, start, moves), tau)
+
+
+@fast_embedded
+def _moving(leg: Leg, deviation: float) -> float:
+    """Return a deviation, or its rate, as far as it is a motion.
+
+    Where the motion is prescribed, the deviation is none: it is driven by friction as that of a free mass, so that
+    steps are as accurate.
+    """
+    return leg.moves * deviation
 
 
 @fast
-def _path_of(leg: Leg, now: Instant, y: float) -> float:
+def _slip_at(leg: Leg, tau: float, u: float) -> float:
+    return slip_at(leg, tau, _moving(leg, u))
+
+
+@fast
+def _slip_rate(leg: Leg, tau: float, a: float) -> float:
+    return slip_rate(leg, tau, _moving(leg, a))
+
+
+_place = by_nearness(
+    lambda body, now: polynomial(body.varying.table, PLACE, now.part), lambda body, now: now.place
+)
+"""_place(body, now): way that the reference has slid since the anchor."""
+
+
+@fast_embedded
+def _path_of(leg: Leg, now: Any, y: float) -> float:
     """Return the path that the leg has slid, in its direction."""
-    body = leg.body
-    swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.start.reference
-    carried = belt_path(body, leg.belt_speed, leg.start.tau, now.tau)
-    return max(leg.side * ((y - leg.start.y) + swung - carried), 0.0)
+    return max(leg.side * (_moving(leg, y - leg.start.y) + leg.start.swung + _place(leg.body, now)), 0.0)
 
 
 @fast_embedded
 def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     """Return the acceleration of the deviation, and friction in shares of the mean normal load."""
-    side, law, now = leg.side, leg.law, instant_near(leg, tau)
+    return _path_rates(leg, instant_near(leg, tau), y, u)
+
+
+@fast_embedded
+def _path_rates(leg: Leg, now: Any, y: float, u: float) -> Any:
+    side, law = leg.side, leg.law
     # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
-    w = side * max(side * deviation_slip(leg, now, u), 0.0)
+    w = side * max(side * deviation_slip(leg, now, _moving(leg, u)), 0.0)
     z = law.deflected(leg.start.z, side * _path_of(leg, now, y))
     rub = law.friction(w, z, law.rate(w, z))
     return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
 
 
-step, dense = stepper(path_rates), interpolant(path_rates)
+@fast_embedded
+def _rates(leg: Leg, stage: int, tau: float, y: float, u: float) -> Any:
+    return _path_rates(leg, instant_of_stage(leg, stage, tau), y, u)
+
+
+@fast_embedded
+def _prepare(leg: Leg, tau: float, h: float) -> None:
+    note_instants(leg, tau, h)
+    note_places(leg, tau, h)
+
+
+step, dense = stepper(_rates, _prepare), interpolant(_rates, _prepare, path_rates)
 
 
 @fast
@@ -118,7 +181,7 @@ def _acceleration_after(leg: Leg, tau: float, end: Any) -> float:
     return a
 
 
-stop, lowest = slip_events(step, _acceleration_after, slip_at, slip_rate)
+stop, lowest = slip_events(step, _acceleration_after, _slip_at, _slip_rate)
 
 
 @inner
@@ -159,7 +222,7 @@ def _until_path(leg: Leg, tau: float, state: State, high: float, path: float) ->
     for _ in range(60):
         beyond = _path_at(leg, tau + h, taken.x) - path
         low, high = (low, h) if beyond > 0.0 else (h, high)
-        speed = leg.side * slip_at(leg, tau + h, taken.v)
+        speed = leg.side * _slip_at(leg, tau + h, taken.v)
         trial = h - beyond / speed if speed > 0.0 else low
         if not low < trial < high:
             trial = 0.5 * (low + high)
@@ -174,10 +237,10 @@ def _until_path(leg: Leg, tau: float, state: State, high: float, path: float) ->
 @inner
 def _slipping(part: float, leg: Leg, tau: float, taken: Dense) -> Any:
     """Return position, velocity and friction at the time ``part`` after the start of a step."""
-    body, (y, u), now = leg.body, motion_within(taken, part), instant_near(leg, tau + part)
+    body, (y, u), (sine, cosine) = leg.body, motion_within(taken, part), turned(leg, tau + part)
     _a, rub = path_rates(leg, tau + part, y, u)
-    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
-    return x, u + reference_velocity(body, now.sine, now.cosine), rub
+    x = _moving(leg, y) + body.reference_sine * sine + body.reference_cosine * cosine
+    return x, _moving(leg, u) + reference_velocity(body, sine, cosine), rub
 
 
 _note_slip = panel_writer(_slipping)
@@ -187,10 +250,10 @@ _note_slip = panel_writer(_slipping)
 def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
     """Return the direction in which slip goes on from here."""
     leg = _leg(case, 1.0, tau, y, z)
-    w = slip_at(leg, tau, u)
+    w = _slip_at(leg, tau, u)
     if w == 0.0:
         a, _rub = path_rates(leg, tau, y, u)
-        w = slip_rate(leg, tau, a)
+        w = _slip_rate(leg, tau, a)
     return 1.0 if w >= 0.0 else -1.0
 
 
@@ -230,18 +293,21 @@ def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
 def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
     """Decide on an accurate step of h: whether slip turned round in it, between its ends included."""
     leg, tau, state = node.leg, node.tau, node.state
-    after, limit = leg.side * slip_at(leg, tau + h, taken.v), h
+    there = instant_of_stage(leg, LAST_STAGE, tau + h)
+    after, limit = leg.side * deviation_slip(leg, there, _moving(leg, taken.v)), h
+    if leg.body.prescribed and after == 0.0 and _slip_at(leg, tau, state.v) == 0.0:
+        return PathStep(ACCEPT, h, taken)  # such a slip may rest, whatever friction does
     if after <= 0.0 and node.leaving:
         # just behind a reversal slip is zero to rounding: the first step must leave the reversal, or slip never does
         if h * leg.body.frequency > 1e-12:
             return PathStep(REPEAT, 0.25 * h, taken)
         return PathStep(TURN, h, taken)
-    a, _rub = path_rates(leg, tau + h, taken.x, taken.v)
-    falls, rises = leg.side * slip_rate(leg, tau, state.a), leg.side * slip_rate(leg, tau + h, a)
+    a, _rub = _path_rates(leg, there, taken.x, taken.v)
+    falls, rises = leg.side * _slip_rate(leg, tau, state.a), leg.side * _slip_rate(leg, tau + h, a)
     # slip that falls first and rises last may have passed zero twice between the ends
     if after > 0.0 and not node.leaving and falls < 0.0 < rises:
         limit = lowest(leg, tau, state, falls, h)
-        after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
+        after = leg.side * _slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
     if after > 0.0:
         return PathStep(ACCEPT, h, taken)
     h, taken = stop(leg, tau, state, 0.0, limit)
@@ -355,7 +421,7 @@ def _path_piece(case: Case, tau: float, end: float, image: Carried, stepping: St
     h = 0.1 * longest
     while end - node.tau > 4e-15 * end:
         leg, tau, state = node.leg, node.tau, node.state
-        w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
+        w, rate = _slip_at(leg, tau, state.v), _slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
         # in the layer behind a reversal steps grow with the path, so that no tolerance jumps over it
         layered = node.corner > node.path or node.corner == math.inf

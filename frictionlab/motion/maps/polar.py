@@ -16,7 +16,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.motion.equation import (
-    anchored,
+    Flow,
     belt_path,
     belt_path_integral,
     belt_velocity,
@@ -144,6 +144,12 @@ def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) ->
     return Progress(place, resting, False, 0.1 / quickest(body), 0.0)
 
 
+@inner
+def _flow(case: Case) -> Flow:
+    """Return the case as records of rest take it, which know no anchor."""
+    return Flow(case.law, case.body, case.belt_speed, 1.0, 0.0, 0.0, 1.0)
+
+
 # --- rest -----------------------------------------------------------------------------------------------------------
 
 
@@ -154,7 +160,7 @@ def _rest(case: Case, at: Progress, end: float, room: Workspace, track: Track) -
     tau, until = place.tau, end_of_rest(case, place.tau, place.x, end)
     lasts = until - tau
     if track.stick.size > 0 and lasts > 0.0:
-        note_stick(track, anchored(case.law, body, belt_speed, 1.0, tau), tau, lasts, place.x)
+        note_stick(track, _flow(case), tau, lasts, place.x)
     room.times[RESTED] += lasts
     if lasts > room.times[LONGEST]:
         room.times[LONGEST], room.times[MIDDLE] = lasts, tau + 0.5 * lasts
@@ -185,8 +191,7 @@ def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Tra
         pressed = normal_load(body, instant_at(body, place.tau))
         held, _rate, _bend = holding_force(body, belt_speed, instant_at(body, place.tau), place.x)
         hop = Hop(place.tau, wait, place.x, w, -w, (held + w / wait) / pressed)
-        flow = anchored(case.law, body, belt_speed, 1.0, place.tau)
-        note_hop(track, place.tau, wait, False, flow, hop)
+        note_hop(track, place.tau, wait, False, _flow(case), hop)
     room.totals[POSITION] += wait * (place.x + wait * w / 3.0) + belt_path_integral(
         body, belt_speed, place.tau, tau
     )

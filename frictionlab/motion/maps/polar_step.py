@@ -19,7 +19,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.motion.equation import (
-    belt_acceleration,
+    belt_rate,
     belt_velocity,
     instant_at,
     load,
@@ -127,8 +127,8 @@ def step_room() -> StepRoom:
         kind.copy(),
         kind.copy(),
         kind.copy(),
+        kind.copy(),
         real,
-        real.copy(),
         real.copy(),
         real.copy(),
         np.empty((2 * n, 2 * n)),
@@ -144,7 +144,7 @@ def begin_step(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
     room.r[0], room.theta[0] = place.r, place.theta
     for j in range(RADAU_STAGES):
         now = instant_at(case.body, place.tau + NODES[j] * h)
-        room.pushed[j] = load(case.body, now) - belt_acceleration(case.body, case.belt_speed, now)
+        room.pushed[j] = load(case.body, now) - belt_rate(case.body, now, 1)
         room.carried[j] = belt_velocity(case.body, case.belt_speed, now)
         room.pressed[j] = normal_load(case.body, now)
 

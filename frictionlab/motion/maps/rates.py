@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import fast, inlined
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars
+from frictionlab.compile.decorators import fast, fast_embedded, inlined
+from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars
 from frictionlab.compile.stack import count_of, room
 from frictionlab.motion.contact import friction_of, rate_of
 from frictionlab.motion.equation import (
@@ -73,7 +73,7 @@ class Work(NamedTuple):
     mode: Any  # [n] FOLLOWS, SMOOTH or YIELDS
     creep: Any  # [2] the scale of the slip that creeps, where a step takes its logarithm, and how slow a slip does
     keeps_stiffness: Any  # filled where the contact keeps its stiffness while the normal load changes
-    share: Any  # [3] there: the normal load over its mean, and its first and second derivative
+    share: Any  # [3] there: the normal load over its mean, and its first and second derivative; else 1, 0, 0
 
 
 kind_of_memory = by_scalars(lambda law, zero: zero, lambda law, zero: 0.0)
@@ -82,15 +82,12 @@ kind_of_memory = by_scalars(lambda law, zero: zero, lambda law, zero: 0.0)
 as_memory = by_scalars(lambda law, value: value, lambda law, value: value.real)
 """as_memory(law, value): number of a state in the type that the law takes."""
 
-contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
-"""contact_kind(body): argument ``contact`` of ``workspace``."""
-
 
 @inlined
-def workspace(law: Any, zero: Any, contact: Any) -> Work:
+def workspace(law: Any, zero: Any, keeps_stiffness: Any) -> Work:
     """Return zeroed arrays on the caller's stack, which live as long as the caller.
 
-    contact: ``contact_kind`` of the body.
+    keeps_stiffness: as in ``Work``.
     """
     return Work(
         start=room(law, 1, 3, zero),
@@ -113,7 +110,7 @@ def workspace(law: Any, zero: Any, contact: Any) -> Work:
         unloads=room(law, 1, 0, 0.0),
         mode=room(law, 1, 0, 0.0),
         creep=room(law, 0, 2, 0.0),
-        keeps_stiffness=contact,
+        keeps_stiffness=keeps_stiffness,
         share=room(law, 0, 3, 0.0),
     )
 
@@ -125,8 +122,7 @@ slip_held = by_scalars(lambda flow, now, u: deviation_slip(flow, now, u), lambda
 
 
 def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
-    v = w + belt_velocity(flow.body, flow.belt_speed, now)
-    return v - reference_velocity(flow.body, now.sine, now.cosine)
+    return w - deviation_slip(flow, now, 0.0 * w)
 
 
 deviation_held = by_scalars(lambda flow, now, u: u, _deviation_of_slip)
@@ -176,37 +172,38 @@ memory."""
 # state remembers, and what moves at z'/n - (n'/n) (z/n). The law is asked for z' and gives it n times too large.
 
 
-def _share_at(work: Work, body: BodyNumbers, now: Instant) -> None:
+@fast
+def note_share(work: Work, body: BodyNumbers, now: Instant) -> None:
+    """Keep the normal load of this instant, if the contact depends on it."""
     mean = body.normal_load
-    work.share[0] = load_share(body, now)
-    work.share[1], work.share[2] = normal_load_rate(body, now) / mean, normal_load_bend(body, now) / mean
+    if len(work.keeps_stiffness) > 0:
+        work.share[0] = load_share(body, now)
+        work.share[1], work.share[2] = normal_load_rate(body, now) / mean, normal_load_bend(body, now) / mean
 
 
-note_share = by_contact(
-    # the contact follows the load
-    lambda work, body, now: None,
-    _share_at,
-)
-"""note_share(work, body, now): keep the normal load of this instant, if the contact depends on it."""
-
-_of_contact = by_contact(lambda work, rate: rate, lambda work, rate: rate / work.share[0])
-"""_of_contact(work, rate): z'/n, from the rate of the law."""
-
-stretching = by_contact(lambda work, z: 0.0 * z, lambda work, z: (work.share[1] / work.share[0]) * z)
-"""stretching(work, z): z'/n of a deflection whose z/n is constant."""
-
-slip_to_yield = by_contact(lambda work, k, w: w, lambda work, k, w: w - work.share[1] * work.memory[k])
-"""slip_to_yield(work, k, w): slip against the yield surface of a deflection, which moves with a growing
-load."""
+@fast_embedded
+def _per_share(work: Work, rate: Any) -> Any:
+    """Return z'/n, from the rate of the law."""
+    return rate / work.share[0] if len(work.keeps_stiffness) > 0 else rate
 
 
-def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
+@fast_embedded
+def stretching(work: Work, z: Any) -> Any:
+    """Return z'/n of a deflection whose z/n is constant."""
+    return (work.share[1] / work.share[0]) * z if len(work.keeps_stiffness) > 0 else 0.0 * z
+
+
+@fast
+def slip_to_yield(work: Work, k: int, w: Any) -> Any:
+    """Return slip against the yield surface of a deflection, which moves with a growing load."""
+    return w - work.share[1] * work.memory[k]
+
+
+@fast
+def slip_rate_to_yield(work: Work, k: int, a: Any) -> Any:
+    """Return the rate of that slip."""
     moves = work.moving[k] - stretching(work, work.memory[k])
     return a - work.share[1] * moves - work.share[2] * work.memory[k]
-
-
-slip_rate_to_yield = by_contact(lambda work, k, a: a, _slip_rate_of_yield)
-"""slip_rate_to_yield(work, k, a): rate of that slip."""
 
 
 # --- rates --------------------------------------------------------------------------------------------------------
@@ -229,12 +226,12 @@ _yielding = by_dimension(
 @fast
 def _deflection_rate(law: Any, work: Work, k: int, w: Any) -> Any:
     if work.mode[k] < 0.0:  # difference quotients at a corner must not see what comes after
-        return _of_contact(work, w)
+        return _per_share(work, w)
     if work.radius[k] > 0.0 and work.mode[k] > 0.0:
         work.memory[k] = on_circle(work.radius[k], work.memory[k])
-        turns = _of_contact(work, _yielding(law, work.memory, k, w))
+        turns = _per_share(work, _yielding(law, work.memory, k, w))
         return turns + stretching(work, work.memory[k])
-    return _of_contact(work, rate_of(law, work.memory, k, w))
+    return _per_share(work, rate_of(law, work.memory, k, w))
 
 
 rate_in_mode = by_scalars(
@@ -275,4 +272,4 @@ def fill_rates(flow: Flow, now: Instant, work: Work, zero: Any) -> Any:
     work.rates[IMPULSE] = load_share(body, now) * friction
     for k in range(n):
         work.rates[MEMORY + k] = work.moving[k] - stretching(work, work.memory[k]) + 0.0 * zero
-    return w, deviation_slip_rate(flow, now, a)
+    return w, a

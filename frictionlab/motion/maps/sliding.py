@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.decorators import fast, fast_embedded, inner
 from frictionlab.compile.dispatch import by_dimension, length
 from frictionlab.compile.lane_arrays import select
 from frictionlab.motion.equation import (
@@ -20,29 +20,36 @@ from frictionlab.motion.equation import (
     anchored,
     belt_path,
     belt_velocity,
+    deviation_slip,
     holding_force,
     instant_at,
     instant_near,
+    instant_of_stage,
     is_free,
     normal_load,
+    note_instants,
     piece_ends,
     pieces_of,
     quickest_of,
     rates,
+    rates_at,
     reference_position,
     reference_velocity,
     resting_friction,
     runs_away,
     slip_at,
     slip_rate,
+    turned,
 )
 from frictionlab.motion.events import dips, slip_events
 from frictionlab.motion.maps.case import Case, case_in_piece
 from frictionlab.motion.maps.stick import StickPhase, stick_phase
 from frictionlab.motion.orbit.recorder import Track, panel_writer
 from frictionlab.motion.steppers.dop853 import (
+    LAST_STAGE,
     Dense,
     State,
+    Step,
     interpolant,
     motion_within,
     stepper,
@@ -65,7 +72,12 @@ class Mapped(NamedTuple):
 MOST_STEPS = 200_000
 
 
-step, dense = stepper(rates), interpolant(rates)
+@fast_embedded
+def _rates(problem: Flow, stage: int, tau: float, y: Any, u: Any) -> Any:
+    return rates_at(problem, instant_of_stage(problem, stage, tau), y, u)
+
+
+step, dense = stepper(_rates, note_instants), interpolant(_rates, note_instants, rates)
 
 
 @inner
@@ -73,6 +85,13 @@ def state_at(problem: Flow, tau: float, y: Any, u: Any) -> State:
     """Return the state from which slip goes on."""
     a, f = rates(problem, tau, y, u)
     return State(y, u, a, f)
+
+
+@inner
+def _state_then(problem: Flow, now: Any, taken: Step) -> State:
+    """Return the state at the end of a step."""
+    a, f = rates_at(problem, now, taken.x, taken.v)
+    return State(taken.x, taken.v, a, f)
 
 
 @inner
@@ -167,13 +186,13 @@ _before = by_dimension(
 
 def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: float) -> Landing:
     """Decide whether slip passed through zero in the step, between its nodes included."""
-    side, state, limit = problem.side, node.state, h
-    after = side * slip_at(problem, node.tau + h, taken.v)
+    side, state, limit, now = problem.side, node.state, h, instant_of_stage(problem, LAST_STAGE, node.tau + h)
+    after = side * deviation_slip(problem, now, taken.v)
     if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
         return Landing(STILL, h, state_at(problem, node.tau + h, taken.x, taken.v), taken.friction_impulse)
     if after <= 0.0 and leaving:
         return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
-    there = state_at(problem, node.tau + h, taken.x, taken.v)
+    there = _state_then(problem, now, taken)
     rises = side * slip_rate(problem, node.tau + h, there.a) > 0.0
     if after > 0.0 and not leaving and side * node.rate < 0.0 and rises:
         limit = lowest(problem, node.tau, state, side * node.rate, h)
@@ -188,8 +207,8 @@ def _after_in_the_plane(
     problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: complex
 ) -> Landing:
     """Decide whether slip came close to rest between the nodes: then the step was too long."""
-    after = slip_at(problem, node.tau + h, taken.v)
-    there = state_at(problem, node.tau + h, taken.x, taken.v)
+    now = instant_of_stage(problem, LAST_STAGE, node.tau + h)
+    after, there = deviation_slip(problem, now, taken.v), _state_then(problem, now, taken)
     if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, there.a), h):
         return Landing(REPEAT, 0.5 * h, node.state, y)
     return Landing(ACCEPT, h, there, taken.friction_impulse)
@@ -205,10 +224,10 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 def motion_in_slip(part: float, problem: Flow, node: Node, taken: Dense) -> Any:
     """Return position, velocity and friction at the time ``part`` after the start of a step."""
     body, tau = problem.body, node.tau + part
-    (y, u), now = motion_within(taken, part), instant_near(problem, tau)
+    (y, u), (sine, cosine) = motion_within(taken, part), turned(problem, tau)
     _a, f = rates(problem, tau, y, u)
-    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
-    return x, u + reference_velocity(body, now.sine, now.cosine), f
+    x = y + body.reference_sine * sine + body.reference_cosine * cosine
+    return x, u + reference_velocity(body, sine, cosine), f
 
 
 @inner
@@ -258,7 +277,7 @@ def note_stick(track: Track, problem: Flow, tau: float, lasts: float, x: Any) ->
     The loads vary within a rest.
     """
     body, belt_speed = problem.body, problem.belt_speed
-    quickest = 0.0 if is_free(body, x) else quickest_of(body)
+    quickest = 0.0 if is_free(body) else quickest_of(body)
     panels = 1 + int(4.0 / math.pi * quickest * lasts)
     for k in range(panels):
         start = tau + lasts * k / panels

@@ -28,6 +28,7 @@ from frictionlab.motion.orbit.recorder import NODES, WEIGHTS, differentiate_pane
 from frictionlab.scene.body import Mass, for_kernels
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.scene.varying import PIECES
 from frictionlab.values.columns import FROM_ORBITS
 from frictionlab.values.quantities import Floats
 
@@ -133,7 +134,7 @@ def _mass(scene: Scene) -> Mass:
     if scene.degrees_of_freedom:
         return for_kernels(scene.mass())
     motion = scene.motion()
-    return Mass(0.0, 1.0, 0.0, 1.0, motion.normal_load, motion.frequency, 0j, 0j)
+    return for_kernels(Mass(0.0, 1.0, 0.0, 1.0, motion.normal_load, motion.frequency, 0j, 0j))
 
 
 def _read_together(scenes: Sequence[Scene], found: Orbits) -> Floats:
@@ -281,7 +282,7 @@ def _drop_rounding(part: Any, v: Any) -> None:
 @inner
 def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """Return the sums over the period, and leave the slip velocity of every node in ``slips``."""
-    body, total, last = bare(planar(mass)), NO_SUMS, NODES.size - 1
+    body, total, last = bare(planar(mass, 1.0), mass.varying.table), NO_SUMS, NODES.size - 1
     for k in range(panels.tau.shape[0]):
         stuck = 1.0 if panels.stick[k] else 0.0
         parts = panels.tau[k], panels.x[k], panels.v[k], panels.friction[k]
@@ -298,11 +299,11 @@ def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -
 
 def _integrals_in_python(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """Return the same sums by the same code with all panels at once: node by node, each an array."""
-    if mass.varying:  # every panel has a body of its own
+    if mass.varying.table[PIECES] > 1.0:  # every panel has a body of its own
         return interpreted(_by_panels)(panels, mass, belt_speed, slips)
     stuck = panels.stick.astype(float)
     parts = panels.tau.T, panels.x.T, panels.v.T, panels.friction.T
-    body = interpreted(planar)(mass)
+    body = interpreted(planar)(mass, 1.0)
     of_panels = interpreted_on_arrays(_with_a_panel)(NO_SUMS, body, belt_speed, parts, stuck, slips.T)
     return Sums(*(each.sum().item() for each in of_panels))
 

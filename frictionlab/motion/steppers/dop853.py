@@ -337,8 +337,22 @@ class Dense(NamedTuple):
     v: Any
 
 
+@fast_embedded
+def unprepared(problem: Any, tau: float, h: float) -> None:
+    """Prepare nothing: for rates that know all times alike."""
+
+
+TIMES = (
+    0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726, 0.3333333333333333,
+    0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571, 1.0,
+)  # fmt: skip
+"""Times of the stages, in shares of a step."""
+LAST_STAGE = len(TIMES) - 1
+"""Stage at the end of the step."""
+
+
 @cache
-def _stages_of(rates: Any) -> Any:
+def _stages_of(rates: Any, prepare: Any) -> Any:
     """Return ``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``.
 
     It is compiled only once.
@@ -347,30 +361,31 @@ def _stages_of(rates: Any) -> Any:
     @fast_embedded
     def stages(problem: Any, tau: float, state: State, h: float) -> Stages:
         x, v0, a0, f0 = state
+        prepare(problem, tau, h)
         v1 = v0 + h * _sum1(a0)
-        a1, _f1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1)
+        a1, _f1 = rates(problem, 1, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1)
         v2 = v0 + h * _sum2(a0, a1)
-        a2, _f2 = rates(problem, tau + 0.0789002279381516 * h, x + h * _sum2(v0, v1), v2)
+        a2, _f2 = rates(problem, 2, tau + 0.0789002279381516 * h, x + h * _sum2(v0, v1), v2)
         v3 = v0 + h * _sum3(a0, a2)
-        a3, _f3 = rates(problem, tau + 0.1183503419072274 * h, x + h * _sum3(v0, v2), v3)
+        a3, _f3 = rates(problem, 3, tau + 0.1183503419072274 * h, x + h * _sum3(v0, v2), v3)
         v4 = v0 + h * _sum4(a0, a2, a3)
-        a4, _f4 = rates(problem, tau + 0.2816496580927726 * h, x + h * _sum4(v0, v2, v3), v4)
+        a4, _f4 = rates(problem, 4, tau + 0.2816496580927726 * h, x + h * _sum4(v0, v2, v3), v4)
         v5 = v0 + h * _sum5(a0, a3, a4)
-        a5, f5 = rates(problem, tau + 0.3333333333333333 * h, x + h * _sum5(v0, v3, v4), v5)
+        a5, f5 = rates(problem, 5, tau + 0.3333333333333333 * h, x + h * _sum5(v0, v3, v4), v5)
         v6 = v0 + h * _sum6(a0, a3, a4, a5)
-        a6, f6 = rates(problem, tau + 0.25 * h, x + h * _sum6(v0, v3, v4, v5), v6)
+        a6, f6 = rates(problem, 6, tau + 0.25 * h, x + h * _sum6(v0, v3, v4, v5), v6)
         v7 = v0 + h * _sum7(a0, a3, a4, a5, a6)
-        a7, f7 = rates(problem, tau + 0.3076923076923077 * h, x + h * _sum7(v0, v3, v4, v5, v6), v7)
+        a7, f7 = rates(problem, 7, tau + 0.3076923076923077 * h, x + h * _sum7(v0, v3, v4, v5, v6), v7)
         v8 = v0 + h * _sum8(a0, a3, a4, a5, a6, a7)
-        a8, f8 = rates(problem, tau + 0.6512820512820513 * h, x + h * _sum8(v0, v3, v4, v5, v6, v7), v8)
+        a8, f8 = rates(problem, 8, tau + 0.6512820512820513 * h, x + h * _sum8(v0, v3, v4, v5, v6, v7), v8)
         v9 = v0 + h * _sum9(a0, a3, a4, a5, a6, a7, a8)
-        a9, f9 = rates(problem, tau + 0.6 * h, x + h * _sum9(v0, v3, v4, v5, v6, v7, v8), v9)
+        a9, f9 = rates(problem, 9, tau + 0.6 * h, x + h * _sum9(v0, v3, v4, v5, v6, v7, v8), v9)
         v10 = v0 + h * _sum10(a0, a3, a4, a5, a6, a7, a8, a9)
         a10, f10 = rates(
-            problem, tau + 0.8571428571428571 * h, x + h * _sum10(v0, v3, v4, v5, v6, v7, v8, v9), v10
+            problem, 10, tau + 0.8571428571428571 * h, x + h * _sum10(v0, v3, v4, v5, v6, v7, v8, v9), v10
         )
         v11 = v0 + h * _sum11(a0, a3, a4, a5, a6, a7, a8, a9, a10)
-        a11, f11 = rates(problem, tau + h, x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10), v11)
+        a11, f11 = rates(problem, 11, tau + h, x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10), v11)
         return Stages(
             (v0, v5, v6, v7, v8, v9, v10, v11),
             (a0, a5, a6, a7, a8, a9, a10, a11),
@@ -380,13 +395,15 @@ def _stages_of(rates: Any) -> Any:
     return stages
 
 
-def stepper(rates: Any) -> Any:
-    """Return ``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v)``.
+def stepper(rates: Any, prepare: Any) -> Any:
+    """Return ``step(problem, tau, state, h)`` for a kernel function ``rates(problem, stage, tau, x, v)``.
+
+    prepare(problem, tau, h) is called before the stages 1 to 11 of a step.
 
     The rates return (x'', friction). They are bound here because numba caches no kernel that is handed a
     function.
     """
-    stages = _stages_of(rates)
+    stages = _stages_of(rates, prepare)
 
     @fast
     def step(problem: Any, tau: float, state: State, h: float) -> Step:
@@ -423,9 +440,12 @@ def _coefficients(h: float, start: Any, end: Any, k: Any, extra: Any) -> Any:
     )
 
 
-def interpolant(rates: Any) -> Any:
-    """Return ``dense(problem, tau, state, h)``, the whole step that ``stepper`` takes for the same rates."""
-    stages = _stages_of(rates)
+def interpolant(rates: Any, prepare: Any, rates_near: Any) -> Any:
+    """Return ``dense(problem, tau, state, h)``, the whole step that ``stepper`` takes for the same rates.
+
+    rates_near(problem, tau, x, v) are the same at any other time of the step.
+    """
+    stages = _stages_of(rates, prepare)
 
     @fast
     def dense(problem: Any, tau: float, state: State, h: float) -> Dense:
@@ -434,16 +454,16 @@ def interpolant(rates: Any) -> Any:
         _v0, v5, v6, v7, v8, v9, v10, v11 = v
         _a0, a5, a6, a7, a8, a9, a10, a11 = a
         ended, v12 = x + h * _sum12(*v), v0 + h * _sum12(*a)
-        a12, _f12 = rates(problem, tau + h, ended, v12)
+        a12, _f12 = rates_near(problem, tau + h, ended, v12)
         v13 = v0 + h * _sum14(a0, a6, a7, a8, a9, a10, a11, a12)
         x13 = x + h * _sum14(v0, v6, v7, v8, v9, v10, v11, v12)
-        a13, _f13 = rates(problem, tau + 0.1 * h, x13, v13)
+        a13, _f13 = rates_near(problem, tau + 0.1 * h, x13, v13)
         v14 = v0 + h * _sum15(a0, a5, a6, a7, a10, a11, a12, a13)
         x14 = x + h * _sum15(v0, v5, v6, v7, v10, v11, v12, v13)
-        a14, _f14 = rates(problem, tau + 0.2 * h, x14, v14)
+        a14, _f14 = rates_near(problem, tau + 0.2 * h, x14, v14)
         v15 = v0 + h * _sum16(a0, a5, a6, a7, a8, a12, a13, a14)
         x15 = x + h * _sum16(v0, v5, v6, v7, v8, v12, v13, v14)
-        a15, _f15 = rates(problem, tau + 0.7777777777777778 * h, x15, v15)
+        a15, _f15 = rates_near(problem, tau + 0.7777777777777778 * h, x15, v15)
         return Dense(
             h,
             _coefficients(h, x, ended, v, (v12, v13, v14, v15)),

@@ -6,7 +6,6 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import embedded, fast, inner
-from frictionlab.compile.dispatch import by_variation
 from frictionlab.compile.lane_arrays import select
 from frictionlab.motion.equation import quickest_of
 from frictionlab.scene.body import BodyNumbers
@@ -19,29 +18,27 @@ they hand on."""
 FIRST, MIDDLE, LAST = 0, 1, 2
 """Nodes of a step, half a step apart."""
 
-node = by_variation(lambda body, k, part: 2 * k + part, lambda body, k, part: 3 * k + part)
-"""node(body, k, part): index in the lap of this node of the k-th step. Where something may jump at a corner,
-the step that ends there and the one that begins there have a node each."""
-
-_belt = by_variation(lambda body, velocity: velocity.real, lambda body, velocity: velocity)
+GRID_NODES = 3
+"""Count of nodes of a step: where something may jump at a corner, the step that ends there and the one that begins
+there have a node each."""
 
 
 @embedded
 def load_at(problem: Any, k: int, part: int) -> Any:
     """Return the load on the mass at a node of the k-th step."""
-    return problem.grid[COLUMNS * node(problem.body, k, part) + LOAD]
+    return problem.grid[COLUMNS * (GRID_NODES * k + part) + LOAD]
 
 
 @embedded
 def normal_load_at(problem: Any, k: int, part: int) -> float:
     """Return the normal load at a node of the k-th step."""
-    return problem.grid[COLUMNS * node(problem.body, k, part) + NORMAL_LOAD].real
+    return problem.grid[COLUMNS * (GRID_NODES * k + part) + NORMAL_LOAD].real
 
 
 @embedded
 def belt_at(problem: Any, k: int, part: int) -> Any:
-    """Return the velocity of the belt at a node of the k-th step; a number on the line where it is steady."""
-    return _belt(problem.body, problem.grid[COLUMNS * node(problem.body, k, part) + BELT])
+    """Return the velocity of the belt at a node of the k-th step."""
+    return problem.grid[COLUMNS * (GRID_NODES * k + part) + BELT]
 
 
 class StepStart(NamedTuple):

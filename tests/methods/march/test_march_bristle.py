@@ -105,7 +105,7 @@ def stepped(stepper, mass, steps, h, law=STEADY, **start):
     values = {"belt_speed": 0.0, "v": 0.0, "z": 0.0, **start}
     settings = MarchSettings(
         belt_speed=values["belt_speed"], driven=True, steps=steps, span=h * steps, first=h, slack=0.5, reach=h,
-        enough=0.0, most=1, stride=2, rate=0.0, work=10**9, window=50, room=0,
+        enough=0.0, most=1, stride=2, rate=0.0, work=10**9, window=50, room=0, refined=1,
     )  # fmt: skip
     begin = MarchState(0.0, values["v"], np.array([values["z"]]))
     laps = KernelCall(march_laps, law)(on_the_line(mass), STEPPERS[stepper], settings, begin).laps

@@ -80,7 +80,7 @@ def rows_of(speeds: np.ndarray) -> Any:
 @deep("more kernels to compile")
 @pytest.mark.parametrize("law", [LAW, FALLING], ids=["Coulomb", "Stribeck"])
 def test_a_lane_is_the_map_of_its_belt_speed(law):
-    body, speeds = problem_of(scene_of()).body, np.linspace(5.0, 60.0, 8)
+    body, speeds = problem_of(scene_of()).body_in_lanes, np.linspace(5.0, 60.0, 8)
     one = compiled(mapped_one_by_one, law)(body, rows_of(speeds), 1e-12)
     lanes = compiled(mapped_in_lanes, law)(body, rows_of(speeds), 1e-12, False)
     arrays = interpreted(mapped_in_lanes)(law, body, rows_of(speeds), 1e-12, False)
@@ -93,7 +93,7 @@ def test_a_lane_is_the_map_of_its_belt_speed(law):
 
 @deep("more kernels to compile")
 def test_a_lane_that_comes_to_rest_leaves_and_stops_no_other():
-    body = problem_of(scene_of(normal_load=2000.0)).body
+    body = problem_of(scene_of(normal_load=2000.0)).body_in_lanes
     speeds = np.array([1e-3, *np.linspace(5000.0, 6000.0, 7)])
     one = compiled(mapped_one_by_one, LAW)(body, rows_of(speeds), 1e-12)
 
@@ -109,7 +109,7 @@ def test_errors_of_what_lanes_close_cover_at_every_tolerance(omega):
     true = closed_one_by_one(problem, 1e-12).closed
     for tolerance in (1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10):
         goal = problem.goal._replace(tolerance=tolerance)
-        lanes = KernelCall(answer_lanes, LAW)(problem.body, SPEEDS, goal)
+        lanes = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, SPEEDS, goal)
 
         assert (lanes.fate == CLOSED_ORBIT).all()
         found = lanes.closed
@@ -122,7 +122,9 @@ def test_states_are_as_good_as_the_mean():
     """Columns of an orbit are read from its state."""
     problem = problem_of(scene_of())
     true = closed_one_by_one(problem, 1e-12).states
-    lanes = KernelCall(answer_lanes, LAW)(problem.body, SPEEDS, problem.goal._replace(tolerance=1e-7))
+    lanes = KernelCall(answer_lanes, LAW)(
+        problem.body_in_lanes, SPEEDS, problem.goal._replace(tolerance=1e-7)
+    )
 
     assert np.abs(lanes.states - true).max() <= 1e-7
 
@@ -131,7 +133,7 @@ def test_what_meets_rest_is_closed_by_the_search_for_one():
     """Friction that holds the mass for a while at the slow belt speeds alone."""
     scene = scene_of(normal_load=400.0)
     problem, speeds = problem_of(scene), np.linspace(2.0, 200.0, 30)
-    lanes = KernelCall(answer_lanes, LAW)(problem.body, speeds, problem.goal)
+    lanes = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, speeds, problem.goal)
     left = lanes.fate != CLOSED_ORBIT
     assert 3 <= left.sum() <= 27
     assert np.isnan(lanes.results[left]).all()
@@ -148,7 +150,7 @@ def test_what_meets_rest_is_closed_by_the_search_for_one():
 @pytest.mark.parametrize("points", [1, 4, 7, 8, 9, 24])
 def test_any_number_of_points_is_closed(points):
     problem, speeds = problem_of(scene_of()), np.linspace(3.0, 50.0, points)
-    lanes = KernelCall(answer_lanes, LAW)(problem.body, speeds, problem.goal)
+    lanes = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, speeds, problem.goal)
 
     assert (lanes.fate == CLOSED_ORBIT).all()
 
@@ -176,9 +178,9 @@ def difference_quotients(law, body, belt_speeds, states, shift, accuracy):
 def test_multipliers_are_those_of_difference_quotients(omega):
     problem = problem_of(scene_of(omega))
     speeds = SPEEDS[::9]
-    states = KernelCall(answer_lanes, LAW)(problem.body, speeds, problem.goal).states
-    fine = interpreted(difference_quotients)(LAW, problem.body, speeds, states, 1e-4, 1e-12)
-    lanes = KernelCall(differentiate_in_lanes, LAW)(problem.body, speeds, states)
+    states = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, speeds, problem.goal).states
+    fine = interpreted(difference_quotients)(LAW, problem.body_in_lanes, speeds, states, 1e-4, 1e-12)
+    lanes = KernelCall(differentiate_in_lanes, LAW)(problem.body_in_lanes, speeds, states)
 
     moduli = [np.abs(np.linalg.eigvals(matrices)).max(axis=1) for matrices in (fine, lanes)]
     assert np.abs(moduli[0] - moduli[1]).max() < 1e-5
@@ -212,12 +214,12 @@ def test_orbits_are_those_of_the_record_of_one():
 @deep("seconds of Python")
 def test_without_kernels_a_curve_is_closed_on_arrays(request):
     problem = problem_of(scene_of())
-    lanes = KernelCall(answer_lanes, LAW)(problem.body, SPEEDS, problem.goal)
-    matrices = KernelCall(differentiate_in_lanes, LAW)(problem.body, SPEEDS, lanes.states)
+    lanes = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, SPEEDS, problem.goal)
+    matrices = KernelCall(differentiate_in_lanes, LAW)(problem.body_in_lanes, SPEEDS, lanes.states)
 
     kernels = request.getfixturevalue("without_kernels")
-    arrays = KernelCall(answer_lanes, LAW)(problem.body, SPEEDS, problem.goal)
-    quotients = KernelCall(differentiate_in_lanes, LAW)(problem.body, SPEEDS, lanes.states)
+    arrays = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, SPEEDS, problem.goal)
+    quotients = KernelCall(differentiate_in_lanes, LAW)(problem.body_in_lanes, SPEEDS, lanes.states)
 
     assert not list(kernels.glob("*.kernel"))
     assert (arrays.fate == CLOSED_ORBIT).all()

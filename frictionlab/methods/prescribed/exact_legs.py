@@ -4,7 +4,8 @@ Slip of velocity speed*(kappa + cos(psi)), 0 <= kappa < 1, goes forward while |p
 with cos(phi) = kappa. Along each leg the law gives the deflection exactly at any stiffness; there remain one equation
 for the deflection at the start of the forward leg, and quadrature.
 
-Licence (18 scenes): 57 times faster in the median than the period map of a memory of any size (from 22).
+Licence: five times as quick as the map by path (.11 ms a point for .55; three contacts of Dahl's at four belt
+speeds), with errors of 1e-14 for 1e-11.
 """
 
 from __future__ import annotations

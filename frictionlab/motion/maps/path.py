@@ -15,7 +15,6 @@ from frictionlab.compile.decorators import fast, fast_embedded, inner
 from frictionlab.compile.dispatch import by_nearness
 from frictionlab.motion.equation import (
     belt_path,
-    belt_swing,
     deviation_acceleration,
     deviation_slip,
     expand_about,
@@ -96,10 +95,7 @@ def _anchored(leg: Leg, tau: float) -> Leg:
     sine, cosine = math.sin(angle), math.cos(angle)
     z, y, begin, reference, _ = leg.start
     swung = body.reference_sine * sine + body.reference_cosine * cosine - reference
-    if belt_swing(body) > 0.0:
-        swung = swung - belt_path(body, leg.belt_speed, begin, tau)
-    else:
-        swung = swung - leg.belt_speed * (tau - begin)
+    swung = swung - belt_path(body, leg.belt_speed, begin, tau)
     expand_about(body, leg.belt_speed, tau, sine, cosine)
     expand_places(body)
     start = LegStart(z, y, begin, reference, swung)

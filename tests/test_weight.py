@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1409,
     "curves": 841,
     "laws": 686,
-    "methods": 9943,
+    "methods": 9911,
     "motion": 4589,
     "report": 1772,
     "runner": 4271,

@@ -13,7 +13,7 @@ from pydantic import Field, field_validator
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Multipliers, Status, beyond_linear
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Ledger, Method, Multipliers, beyond_linear
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.continuation import make_orbits
 from frictionlab.methods.exact.forcing import forcing_of, resonates
@@ -125,7 +125,7 @@ class Exact(Method):
         if scenes[0].degrees_of_freedom == 0:
             return solve_prescribed(scenes, law, tolerance)
         curve_of = _Curve if scenes[0].is_harmonic else _VaryingCurve
-        answers = curve_of(scenes, law.sliding_friction(1.0), tolerance).answers()
+        answers = curve_of(scenes, law.sliding_friction(1.0), tolerance).solved()
         if self.certify:
             from frictionlab.methods.exact.proof.prove import certified  # python-flint need not be there
 
@@ -133,7 +133,7 @@ class Exact(Method):
         return answers
 
 
-class _Curve:
+class _Curve(Ledger):
     """The scenes of one curve on their way to answers.
 
     sides: -1 where the mirror image of a scene is solved, so that the belt moves ahead.
@@ -146,15 +146,12 @@ class _Curve:
         self.belt_speeds = belt_speeds_of(scenes)
         self.sides = np.where(self.belt_speeds < 0.0, -1.0, 1.0)
         n = len(scenes)
-        self.status: list[Status] = ["ok"] * n
-        self.reason, self.model, self.error_kind = [""] * n, [str(ModelWord.EVENTS)] * n, ["estimated"] * n
+        super().__init__(n)
+        self.status, self.error_kind, self.unique = ["ok"] * n, ["estimated"] * n, [PROVED] * n
+        self.model = [str(ModelWord.EVENTS)] * n
         self.rows = np.full((n, curve.COLUMNS), np.nan)
-        self.unique = [PROVED] * n
-        self.window = np.full(n, np.nan)
-        self.bounds = np.full((n, 2), np.nan)
-        self.seconds = 0.0
 
-    def answers(self) -> Answers:
+    def solved(self) -> Answers:
         """Solve and judge."""
         special = np.flatnonzero(self._may_have_no_single_answer())
         settled = [i for i in special.tolist() if self._has_no_single_answer(i)]
@@ -170,25 +167,13 @@ class _Curve:
             proved[text] if unique == PROVED else text
             for text, unique in zip(self.model, self.unique, strict=True)
         ]
-        mean = self.sides * self.rows[:, curve.MEAN]
-        low, high = self.bounds.T
-        return Answers(
-            status=self.status,
-            reason=self.reason,
-            model=self.model,
-            error_kind=self.error_kind,
-            mean=mean,
-            error=self.rows[:, curve.ERROR],
-            period=np.where(np.isfinite(mean), float(self.scenes[0].periods), np.nan),
+        self.mean, self.error = self.sides * self.rows[:, curve.MEAN], self.rows[:, curve.ERROR]
+        self.period = np.where(np.isfinite(self.mean), float(self.scenes[0].periods), np.nan)
+        return self.answers(
             floquet=self._floquet,
             multipliers=self._multipliers,
-            mean_low=low,
-            mean_high=high,
-            window=self.window,
-            unique=self.unique,
-            seconds=np.full(len(mean), self.seconds / len(mean)),
             orbit=lambda i: self._orbits([i]).one(0),
-            orbits=lambda: self._orbits(range(len(mean))),
+            orbits=lambda: self._orbits(range(len(self.scenes))),
         )
 
     def _may_have_no_single_answer(self) -> NDArray[np.bool_]:
@@ -205,8 +190,7 @@ class _Curve:
         elif undamped and (force == 0.0 or abs(speed) >= friction_free_velocity(self.scenes[i])):
             self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
         elif undamped and self.mass.frequency == 1.0 and self.limit < 0.25 * math.pi * force:
-            self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNBOUNDED, "", ""
-            self.unique[i] = ""
+            self.fail(i, UNBOUNDED)
         else:
             return False
         return True
@@ -216,13 +200,11 @@ class _Curve:
 
     def _depends_on_start(self, i: int, bounds: tuple[float, float], reason: str) -> None:
         """Not unique, unless the scene says where it starts; bounds: of the mean over all starts."""
+        if self.scenes[i].initial is None or not self._settles(i):
+            self.leave_open(i, reason, *bounds, float(self.scenes[i].periods))
+            self.model[i] = str(ModelWord.ANY_START)
+            self.rows[i, curve.LEGS] = 0.0
         self.unique[i] = NOT_UNIQUE
-        if self.scenes[i].initial is not None and self._settles(i):
-            return
-        self.status[i], self.reason[i], self.error_kind[i] = "not_unique", reason, ""
-        self.model[i] = str(ModelWord.ANY_START)
-        self.bounds[i], self.window[i] = bounds, float(self.scenes[i].periods)
-        self.rows[i, curve.LEGS] = 0.0
 
     def _settles(self, i: int) -> bool:
         """Simulate from scene.initial until nothing changes."""
@@ -257,7 +239,8 @@ class _Curve:
         """Each belt speed once: both directions share one solution where the mean is exactly odd."""
         speeds, back = np.unique(self.sides[places] * self.belt_speeds[places] + 0.0, return_inverse=True)
         rows = np.full((len(speeds), curve.COLUMNS), np.nan)
-        _, self.seconds = KernelCall(curve.continue_in_speed).timed(self.mass, self.coefficient, speeds, rows)
+        _, seconds = KernelCall(curve.continue_in_speed).timed(self.mass, self.coefficient, speeds, rows)
+        self.seconds[:] = seconds / len(self.scenes)
         self.rows[places] = rows[back]
 
     def _use_symmetry(self, places: NDArray[np.int64]) -> None:
@@ -281,22 +264,22 @@ class _Curve:
             undamped = "; a load in undamped resonance may let it grow without bound" * (
                 self.mass.damping == 0.0
             )
-            self._fail(
+            self._lose(
                 i, f"no fixed point of the return map found: residual {row[curve.RESIDUAL]:.1e}{undamped}"
             )
         elif self.mass.damping == 0.0 and not row[curve.FLOQUET] < 1.0 - 1e-9:
-            self._fail(
+            self._lose(
                 i,
                 f"without damping the orbit is not attractive: largest multiplier {row[curve.FLOQUET]:.9f}",
             )
         elif not row[curve.ERROR] < math.inf:
-            self._fail(i, "the motion over one period is smaller than the rounding error of its position")
+            self._lose(i, "the motion over one period is smaller than the rounding error of its position")
         elif row[curve.ERROR] > self.tolerance:
             self.reason[i] = f"error {row[curve.ERROR]:.1e} above the tolerance: only rounding errors remain"
 
-    def _fail(self, i: int, reason: str) -> None:
-        self.status[i], self.reason[i], self.error_kind[i] = "failed", reason, ""
-        self.rows[i], self.unique[i] = np.nan, ""
+    def _lose(self, i: int, reason: str) -> None:
+        self.fail(i, reason)
+        self.rows[i] = np.nan
 
     def _floquet(self) -> Floats:
         """In the plane the multipliers of x2 count too; they are known only where friction turns them aside."""

@@ -14,8 +14,8 @@ from frictionlab.methods.base import (
     NOT_UNIQUE,
     PROVED,
     Answers,
+    Ledger,
     Method,
-    Status,
     beyond_balance,
     beyond_linear,
     beyond_springs,
@@ -94,10 +94,10 @@ class RelayLocus(Method):
         found = LocusCurve(scenes, coefficient, tolerance, body)
         if isinstance(body, TabulatedBody):
             found.add_misfit(LocusCurve(scenes, coefficient, tolerance, body.halved()))
-        return found.answers()
+        return found.told()
 
 
-class LocusCurve:
+class LocusCurve(Ledger):
     """The scenes of one curve on their way to answers."""
 
     def __init__(
@@ -109,24 +109,22 @@ class LocusCurve:
         self.normal_load, self.limit = scene.normal_load, coefficient * scene.normal_load
         self.belt_speeds = belt_speeds_of(scenes)
         self.load, self.belt = scene.signals().load[0], scene.signals().belt[0]
-        self.period = scene.signals().period
+        self.span = scene.signals().period
         self.body = body
         n = len(scenes)
-        self.status: list[Status] = ["ok"] * n
-        self.reason, self.error_kind = [""] * n, ["estimated"] * n
+        super().__init__(n)
+        self.status, self.error_kind, self.unique = ["ok"] * n, ["estimated"] * n, [PROVED] * n
         self.model = [f"{ModelWord.LOCUS}; {ModelWord.PASSIVE}"] * n
         self.rows = np.full((n, curve.COLUMNS), np.nan)
         self.found = np.zeros((n, MOST_INSTANTS, 3 + REST_DEGREES[-1]))
-        self.mean, self.error = np.full(n, np.nan), np.full(n, np.nan)
-        self.bounds, self.unique, self.seconds = np.full((n, 2), np.nan), [PROVED] * n, 0.0
 
-        self.response = response_of(self.body, 2.0 * math.pi / self.period)
-        self.free = friction_free_slip(self.body, self.load, self.belt, self.period)
-        self.extremes = self.free.extremes(self.period)
+        self.response = response_of(self.body, 2.0 * math.pi / self.span)
+        self.free = friction_free_slip(self.body, self.load, self.belt, self.span)
+        self.extremes = self.free.extremes(self.span)
         bends = np.ascontiguousarray(self.free.corners[:, [0, 2]])
         self.forcing = FreeWaves(waves_of(self.free.waves), bends, self.free.steady)
         self.longest = (LONGEST_REST if body.smooth else LONGEST_GRADED) / body.fastest
-        terms = terms_of_response(min(self.longest, self.period) * body.fastest)
+        terms = terms_of_response(min(self.longest, self.span) * body.fastest)
         self.rules = rest_rules(REST_DEGREES, terms, 1 if body.smooth else GRADING)
         reversing = self._without_reversal()
         reversing = self._without_motion(reversing)
@@ -138,13 +136,12 @@ class LocusCurve:
         moved = np.abs(self.found[:, :, 0] - other.found[:, :, 0])
         alike = np.all(self.found[:, :, 1] == other.found[:, :, 1], axis=1)
         alike &= self.rows[:, curve.COUNT] == other.rows[:, curve.COUNT]
-        jumps = 2.0 * self.coefficient * moved.sum(axis=1) / self.period
+        jumps = 2.0 * self.coefficient * moved.sum(axis=1) / self.span
         apart = np.abs(self.mean - other.mean)
         slips = (self.rows[:, curve.COUNT] == 0.0) & (other.rows[:, curve.COUNT] == 0.0)
         self.error += np.where(slips, 0.0, apart + np.where(alike, jumps, 3.0 * apart))
         for i in np.flatnonzero(np.isfinite(self.mean) & ~np.isfinite(self.error)).tolist():
-            self.status[i], self.reason[i], self.model[i] = "failed", HALF_FAILED, ""
-            self.error_kind[i], self.unique[i], self.mean[i] = "", "", np.nan
+            self.fail(i, HALF_FAILED)
         self._tell_large_errors("the table is too coarse for less")
 
     def _tell_large_errors(self, why: str) -> None:
@@ -152,24 +149,12 @@ class LocusCurve:
             if self.status[i] == "ok":
                 self.reason[i] = f"error {self.error[i]:.1e} above the tolerance: {why}"
 
-    def answers(self) -> Answers:
+    def told(self) -> Answers:
         """What was found."""
-        n = len(self.scenes)
-        return Answers(
-            status=self.status,
-            reason=self.reason,
-            model=self.model,
-            error_kind=self.error_kind,
-            mean=self.mean,
-            error=self.error,
-            period=np.where(np.isfinite(self.mean), float(self.scenes[0].periods), np.nan),
-            mean_low=self.bounds[:, 0],
-            mean_high=self.bounds[:, 1],
-            window=np.where(np.isfinite(self.bounds[:, 0]), float(self.scenes[0].periods), np.nan),
-            unique=self.unique,
-            seconds=np.full(n, self.seconds / n),
+        self.period = np.where(np.isfinite(self.mean), float(self.scenes[0].periods), np.nan)
+        return self.answers(
             orbit=lambda i: self._orbits([i]).one(0),
-            orbits=lambda: self._orbits(range(n)),
+            orbits=lambda: self._orbits(range(len(self.scenes))),
         )
 
     def _without_reversal(self) -> Any:
@@ -186,14 +171,14 @@ class LocusCurve:
 
     def _without_motion(self, places: Any) -> Any:
         """Settle a belt at rest that holds the mass; the places of the others."""
-        low, high = self.load.extremes(self.period)
+        low, high = self.load.extremes(self.span)
         low, high = (high - self.limit) / self.normal_load, (low + self.limit) / self.normal_load
         still = self.belt.waves == () and low <= high
         held = [i for i in places.tolist() if still and self.belt_speeds[i] == 0.0]
         for i in held:
-            self.status[i], self.unique[i], self.error_kind[i] = "not_unique", NOT_UNIQUE, ""
-            self.reason[i] = f"{HOLDS}{low:.6g} and {high:.6g}"
-            self.model[i], self.bounds[i] = str(ModelWord.ANY_START), (low, high)
+            periods = float(self.scenes[i].periods)
+            self.leave_open(i, f"{HOLDS}{low:.6g} and {high:.6g}", low, high, periods)
+            self.model[i], self.unique[i] = str(ModelWord.ANY_START), NOT_UNIQUE
         return np.setdiff1d(places, held)
 
     def _solve(self, places: Any) -> None:
@@ -201,19 +186,19 @@ class LocusCurve:
         speeds = self.belt_speeds[places]
         order = places[np.lexsort((-np.abs(speeds), speeds < 0.0))]
         low, high = self.extremes
-        loads = self.period * float(np.abs(self.free.corners[:, 2]).sum())
+        loads = self.span * float(np.abs(self.free.corners[:, 2]).sum())
         given = curve.CurveScales(max(high, -low), self.longest, self.response.error, loads, high, low)
         speeds = np.ascontiguousarray(self.belt_speeds)
-        _, self.seconds = KernelCall(curve.follow_curve).timed(
+        _, seconds = KernelCall(curve.follow_curve).timed(
             self.response, self.rules, self.forcing, self.limit, given, (speeds, order), self.rows, self.found
         )
+        self.seconds[:] = seconds / len(self.scenes)
         fine = self.rows[places, curve.VERDICT] == FINE
-        good, per_mean = places[fine], self.period * self.normal_load
+        good, per_mean = places[fine], self.span * self.normal_load
         self.mean[good] = -self.rows[good, curve.IMPULSE] / per_mean
         self.error[good] = self.rows[good, curve.ERROR] / per_mean
         for i in places[~fine].tolist():
-            self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNSOLVED, "", ""
-            self.unique[i] = ""
+            self.fail(i, UNSOLVED)
         self._tell_large_errors("only rounding errors remain")
 
     def _orbits(self, places: Sequence[int]) -> Orbits:

@@ -69,7 +69,7 @@ def measured(file, free_mass=1.0, belt_speed=1.0):
 
 
 def closed_form(scene, known, speeds):
-    return LocusCurve([scene.at(float(v)) for v in speeds], 0.4, 1e-9, known).answers()
+    return LocusCurve([scene.at(float(v)) for v in speeds], 0.4, 1e-9, known).told()
 
 
 @pytest.mark.parametrize("count", [121, 481, 1921])

@@ -27,7 +27,7 @@ DRIVEN = {"damping_ratio": 0.05, "normal_load": 1, "drive": {"unbalance": 0.5, "
 STUDIES = {
     "driven": {"scene": DRIVEN, "laws": [LUGRE]},
     "undriven": {"scene": {"damping_ratio": 0.05, "normal_load": 1}, "laws": [STICKING]},
-    "march": {"scene": DRIVEN, "laws": [LUGRE], "methods": [{"kind": "march", "steps": 100}]},
+    "march": {"scene": DRIVEN, "laws": [LUGRE], "methods": [{"kind": "march", "steps": 1000}]},
 }
 
 

@@ -14,7 +14,7 @@ from frictionlab.methods.base import Status
 from frictionlab.methods.periodic.attraction import Follow, KnownOrbit, corners, unknown_orbit, write_start
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, answer_curve
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, Goal
-from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit
+from frictionlab.methods.periodic.follow import Attractor, DrivePeriods, Follower, closed_orbit, multiplier
 from frictionlab.methods.periodic.period_map import map_kind, size_of
 from frictionlab.methods.periodic.problem import LEAST_GAP, PeriodicProblem, Transient
 from frictionlab.methods.periodic.setting import table_of_maps
@@ -32,6 +32,10 @@ PERIODS = 400
 """Largest number of periods for which a memory is followed plainly from each start."""
 FINE, SAME_MEAN = 1e-9, 1e-6
 """Accuracy of maps with which starts are followed, over the normal load, and largest range of equal means."""
+SLOW, FEW, FINEST_MAP = 1e-3, 4, 1e-11
+"""Largest share of a deviation that a slow contact forgets in a period; for how many periods its mean is watched.
+
+FINEST_MAP: accuracy of their maps."""
 ENDED = "ended here, with no memory and with that of steady sliding"
 HOLDS = "a deflection keeps what it began with, for ever or for thousands of periods"
 NO_END = "no steady state found: the memory does not repeat within {} periods"
@@ -137,7 +141,19 @@ class MemoryPoint:
         if self._is_mirrored and self.law.memory_kind == "bristle":
             self.model, self.error_kind = str(ModelWord.SYMMETRY), "guaranteed"
             return PrescribedMean(0j, EPSILON * friction_at_rest(self.law))
-        return PrescribedMean(complex(closed.mean[0], closed.across[0]), float(closed.error[0]))
+        error = float(closed.error[0]) + self._still_to_go(self.state, 1.0 - multiplier(curve))
+        return PrescribedMean(complex(closed.mean[0], closed.across[0]), error)
+
+    def _still_to_go(self, state: Floats, gap: float) -> float:
+        """Return how far the mean of a contact that forgets little in a period may still move, from its last moves.
+
+        gap: share of a deviation that a period forgets. What maps tell of so slow an orbit is lost in rounding.
+        """
+        if gap > SLOW:
+            return 0.0
+        way = self.problem.followed_on(self.scene.belt_speed, state, FEW, FINEST_MAP)
+        moved = abs(way.means[-1] - way.means[0]) / (FEW - 1)
+        return 2.0 * float(moved + EPSILON * friction_at_rest(self.law)) / gap
 
     @property
     def _is_mirrored(self) -> bool:
@@ -170,7 +186,7 @@ class MemoryPoint:
         # closing may fail beside a corner of the map, to which starts far apart come all the same
         self.state, self.tested = self.reached[0], f"tested: {len(ends)} starts {ENDED}"
         follow, speed = self.problem.followed_on, self.scene.belt_speed
-        fine, coarse = (follow(speed, self.state, 1, each).means[0] for each in (1e-11, 1e-9))
+        fine, coarse = (follow(speed, self.state, 1, each).means[0] for each in (FINEST_MAP, FINE))
         return PrescribedMean(complex(fine), float(spread + 2.0 * abs(coarse - fine) + FINE))
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:

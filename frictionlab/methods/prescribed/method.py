@@ -101,8 +101,15 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
     line = scene.load_along_belt_only
     if not line and law.planar_form() == "per-axis":
         return AxesPoint(scene, lambda axis: _bristle_point(axis, law, tolerance))
-    by_legs = line and scene.is_harmonic and law.exact_path()
-    return BristlePoint(scene, law) if by_legs else MemoryPoint(scene, law, tolerance)
+    if line and law.exact_path() and scene.is_harmonic:
+        return BristlePoint(scene, law)
+    # in a contact that keeps its stiffness, deflections change with the normal load, too
+    if line and law.exact_path() and not scene.constant_contact:
+        slides = VaryingPoint(scene, law)
+        if slides.keeps_its_side():
+            slides.model = ModelWord.SLIP_ONE_WAY
+            return slides
+    return MemoryPoint(scene, law, tolerance)
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:

@@ -201,6 +201,11 @@ class VaryingPoint:
         k = np.flatnonzero(along.at_rest() & self.slip.across.at_rest())
         return float(load.integral(along.edges[k], along.edges[k + 1], k).sum()) / along.period
 
+    def keeps_its_side(self) -> bool:
+        """Check that slip along the belt never reverses and never rests."""
+        slip = self.slip.along.minus(self.belt_speed)
+        return slip.maximum() < 0.0 or slip.negative().maximum() < 0.0
+
     def _by_quadrature(self, turns: MeanDirection | None) -> tuple[complex, float]:
         """Mean and error; along the belt, the share of friction at vanishing speed in closed form.
 

@@ -327,3 +327,28 @@ def test_exact_says_what_it_cannot_do() -> None:
     )
     assert Exact().refusal(scene(0.3, "square", normal_load_variation=constant), LAW) is None
     assert "across the belt" in (Exact().refusal(scene(0.3, "square", slip={"direction": 30.0}), DAHL) or "")
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "expected", "known"),  # by legs between reversals, each with its deflection in closed form
+    [(1e-5, -1.0621421948e-6, 1.4e-11), (1e-6, -1.0621327321e-7, 1.4e-10), (1e-7, -1.06213e-8, 1.4e-9)],
+)
+def test_errors_of_contacts_that_hardly_forget_cover(stiffness: float, expected: float, known: float) -> None:
+    form = {"harmonics": [{"order": 1, "amplitude": 1.0}, {"order": 2, "amplitude": 0.3, "phase": 40}]}
+    one = Scene(belt_speed=0, slip={"velocity_amplitude": 1, "frequency": 1, "waveform": form})
+    found = answer(one, Dahl(mu=0.4, stiffness=stiffness), tolerance=1e-8)
+
+    assert abs(found.mean[0] - expected) <= found.error[0] + known
+
+
+@given(
+    stiffness=st.floats(-6, 6).map(lambda power: 10.0**power),
+    exponent=st.floats(1, 3),
+    ratio=st.floats(1.5, 9),
+)
+def test_slip_that_never_reverses_saturates_every_contact(
+    stiffness: float, exponent: float, ratio: float
+) -> None:
+    law = Dahl(mu=0.4, stiffness=stiffness, exponent=exponent)
+
+    assert mean(scene(-ratio, A_SINE, 40.0), law) == pytest.approx(-0.4, abs=1e-14)

@@ -368,6 +368,21 @@ def acceleration(body: BodyNumbers, now: Instant, x: Any, v: Any, rub: Any) -> A
     return acceleration_under(body, load(body, now), normal_load(body, now), x, v, rub)
 
 
+class Acting(NamedTuple):
+    """Load, normal load and velocity of the belt at one time."""
+
+    push: Any
+    pressed: float
+    belt: Any
+
+
+@inner
+def acting_at(body: BodyNumbers, belt_speed: float, tau: float) -> Acting:
+    """Return what acts on the mass at time tau."""
+    now = instant_at(body, tau)
+    return Acting(load(body, now), normal_load(body, now), belt_velocity(body, belt_speed, now))
+
+
 @inner
 def mean_friction(impulse: Any, time: float) -> Any:
     """Return the mean coefficient from the integral of the resisting friction, over the time.

@@ -24,6 +24,7 @@ from frictionlab.motion.contact import (
     resistance_at_share,
 )
 from frictionlab.motion.equation import (
+    Acting,
     acceleration,
     acceleration_under,
     belt_swing,
@@ -209,12 +210,12 @@ def _smooth_rates(problem: MarchProblem, stage: int, tau: float, x: Any, v: Any)
 
 @as_argument
 @embedded
-def _rates_with_a_bristle(problem: MarchProblem, tau: float, x: Any, v: Any, z: Any) -> Any:
-    """Acceleration, friction and rate of deflection at any time."""
-    body, now = problem.body, instant_at(problem.body, tau)
-    pressed = normal_load(body, now)
-    rate, mu = bristle_resistance(body, problem.law, slip(body, problem.belt_speed, now, v), z, pressed)
-    return acceleration(body, now, x, v, mu), in_shares(body, pressed, mu), rate
+def _rates_with_a_bristle(problem: MarchProblem, acts: Acting, x: Any, v: Any, z: Any) -> Any:
+    """Acceleration, friction and rate of deflection."""
+    body = problem.body
+    rate, mu = bristle_resistance(body, problem.law, v - acts.belt, z, acts.pressed)
+    a = acceleration_under(body, acts.push, acts.pressed, x, v, mu)
+    return a, in_shares(body, acts.pressed, mu), rate
 
 
 @as_argument

@@ -21,6 +21,7 @@ from frictionlab.methods.march.lap import (
     steps_in,
 )
 from frictionlab.motion.equation import (
+    bare,
     belt_advance,
     belt_velocity,
     in_piece,
@@ -257,11 +258,12 @@ def path_stuck(law: Any, body: BodyNumbers, settings: MarchSettings, lap: Lap) -
 
 @inner
 def march_laps(
-    law: Any, body: BodyNumbers, stepper: Any, settings: MarchSettings, start: MarchState
+    law: Any, given: BodyNumbers, stepper: Any, settings: MarchSettings, start: MarchState
 ) -> MarchHistory:
     """From a state lap by lap, until it repeats, stalls, or the laps are used up."""
     # What acts and what is remembered are bare pointers to steppers: the first to an array kept until the end, the
     # others to this function's stack.
+    body = bare(given, given.varying.table)
     grid, item = grid_of(body, settings, start.x), start.z[0]
     memory, ahead = room(law, 1, 1, item), room(law, 1, 1, item)
     problem = MarchProblem(law, body, settings.belt_speed, stepper, items_of(grid), memory, ahead)

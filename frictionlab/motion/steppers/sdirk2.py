@@ -18,6 +18,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.motion.equation import Acting, acting_at
 from frictionlab.motion.linalg import solve_linear
 from frictionlab.motion.steppers.step import StepEnd, StepStart
 
@@ -45,10 +46,10 @@ class DeflectedState(NamedTuple):
 class Stage(NamedTuple):
     """Stage of a step: V = v + g x''(tau, x + g V, V, Z), Z = z + g z'(V, Z).
 
-    quick, deep: scales of velocity and deflection.
+    acts: load, normal load and belt there. quick, deep: scales of velocity and deflection.
     """
 
-    tau: float
+    acts: Acting
     g: float
     x: Any
     v: Any
@@ -75,7 +76,7 @@ class Gap(NamedTuple):
 @inner
 def gap_of(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Gap:
     """Return the residual of the equations of a stage at this velocity and deflection."""
-    a, _, r = rates(problem, stage.tau, stage.x + stage.g * v, v, z)
+    a, _, r = rates(problem, stage.acts, stage.x + stage.g * v, v, z)
     return Gap(v - stage.v - stage.g * a, z - stage.z - stage.g * r)
 
 
@@ -162,13 +163,15 @@ def two_stages(
     x, v, z = start.x, start.v, start.z
     quick = length(v) + length(v - problem.belt_speed) + length(x) * 1e-3 + 1e-9 + swing
     deep = min(problem.law.largest_deflection(), length(z) + h * quick)
-    first = solve_stage(rates, problem, Stage(tau + g, g, x, v, z, quick, deep), v, z)
+    acts = acting_at(problem.body, problem.belt_speed, tau + g)
+    first = solve_stage(rates, problem, Stage(acts, g, x, v, z, quick, deep), v, z)
     # Stiffly accurate: the second stage is the state at the end of the step.
-    a1, f1, r1 = rates(problem, tau + g, x + g * first.v, first.v, first.z)
-    base = Stage(tau + h, g, x + late * first.v, v + late * a1, z + late * r1, quick, deep)
+    a1, f1, r1 = rates(problem, acts, x + g * first.v, first.v, first.z)
+    acts = acting_at(problem.body, problem.belt_speed, tau + h)
+    base = Stage(acts, g, x + late * first.v, v + late * a1, z + late * r1, quick, deep)
     last = solve_stage(rates, problem, base, first.v, first.z)
     after = base.x + g * last.v
-    f2 = rates(problem, tau + h, after, last.v, last.z)[1]
+    f2 = rates(problem, acts, after, last.v, last.z)[1]
     impulse = start.impulse + late * f1 + g * f2
     return DeflectedState(after, last.v, last.z, impulse), first.converged and last.converged
 
@@ -177,7 +180,7 @@ def two_stages(
 def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float, swing: float) -> StepEnd:
     """Take one step over h, for a law of one deflection.
 
-    ``rates(problem, tau, x, v, z)`` returns (x'', friction, z'). swing: amplitude of the variation of the
+    ``rates(problem, acts, x, v, z)`` returns (x'', friction, z'). swing: amplitude of the variation of the
     belt's velocity. Steps in which Newton's method fails are halved. The state is NaN if even 2^-24 of the
     step fails, or if there are too many parts.
     """

@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1409,
     "curves": 841,
     "laws": 686,
-    "methods": 9929,
+    "methods": 9928,
     "motion": 4599,
     "report": 1772,
     "runner": 4271,

@@ -21,6 +21,7 @@ from frictionlab.motion.contact import (
     friction_of,
     project_to_yield,
     rate_of,
+    resistance,
     resistance_at_share,
 )
 from frictionlab.motion.equation import (
@@ -112,21 +113,17 @@ def in_shares(body: BodyNumbers, pressed: float, mu: Any) -> Any:
 
 
 @fast
-def _share_of_contact(body: BodyNumbers, pressed: float) -> float:
-    """Return the normal load over its mean, as a contact that keeps its stiffness knows it; 1 for others."""
-    return pressed / body.normal_load if len(body.varying.keeps_stiffness) > 0 else 1.0
-
-
-@fast
 def bristle_resistance(body: BodyNumbers, law: Any, w: Any, z: Any, pressed: float) -> Any:
     """Return the rate of one bristle, and the friction coefficient."""
-    return resistance_at_share(law, w, z, _share_of_contact(body, pressed))
+    if len(body.varying.keeps_stiffness) == 0:
+        return resistance(law, w, z)
+    return resistance_at_share(law, w, z, pressed / body.normal_load)
 
 
 @fast
 def bristle_within_yield(body: BodyNumbers, law: Any, z: Any, pressed: float) -> Any:
     """Return the deflection, not beyond yield."""
-    n = _share_of_contact(body, pressed)
+    n = pressed / body.normal_load if len(body.varying.keeps_stiffness) > 0 else 1.0
     return n * project_to_yield(law, z / n)
 
 

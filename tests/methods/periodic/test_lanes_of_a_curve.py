@@ -80,8 +80,8 @@ def rows_of(speeds: np.ndarray) -> Any:
 @deep("more kernels to compile")
 @pytest.mark.parametrize("law", [LAW, FALLING], ids=["Coulomb", "Stribeck"])
 def test_a_lane_is_the_map_of_its_belt_speed(law):
-    body, speeds = problem_of(scene_of()).body_in_lanes, np.linspace(5.0, 60.0, 8)
-    one = compiled(mapped_one_by_one, law)(body, rows_of(speeds), 1e-12)
+    problem, speeds = problem_of(scene_of()), np.linspace(5.0, 60.0, 8)
+    one, body = compiled(mapped_one_by_one, law)(problem.body, rows_of(speeds), 1e-12), problem.body_in_lanes
     lanes = compiled(mapped_in_lanes, law)(body, rows_of(speeds), 1e-12, False)
     arrays = interpreted(mapped_in_lanes)(law, body, rows_of(speeds), 1e-12, False)
 
@@ -93,11 +93,11 @@ def test_a_lane_is_the_map_of_its_belt_speed(law):
 
 @deep("more kernels to compile")
 def test_a_lane_that_comes_to_rest_leaves_and_stops_no_other():
-    body = problem_of(scene_of(normal_load=2000.0)).body_in_lanes
+    problem = problem_of(scene_of(normal_load=2000.0))
     speeds = np.array([1e-3, *np.linspace(5000.0, 6000.0, 7)])
-    one = compiled(mapped_one_by_one, LAW)(body, rows_of(speeds), 1e-12)
+    one = compiled(mapped_one_by_one, LAW)(problem.body, rows_of(speeds), 1e-12)
 
-    lanes = compiled(mapped_in_lanes, LAW)(body, rows_of(speeds), 1e-12, False)
+    lanes = compiled(mapped_in_lanes, LAW)(problem.body_in_lanes, rows_of(speeds), 1e-12, False)
 
     assert lanes.arrived.tolist() == one.arrived.tolist() == [0.0] + [1.0] * 7
     np.testing.assert_allclose(lanes.residual[:, 1:], one.residual[:, 1:], rtol=0, atol=1e-8)
@@ -179,7 +179,7 @@ def test_multipliers_are_those_of_difference_quotients(omega):
     problem = problem_of(scene_of(omega))
     speeds = SPEEDS[::9]
     states = KernelCall(answer_lanes, LAW)(problem.body_in_lanes, speeds, problem.goal).states
-    fine = interpreted(difference_quotients)(LAW, problem.body_in_lanes, speeds, states, 1e-4, 1e-12)
+    fine = interpreted(difference_quotients)(LAW, problem.body, speeds, states, 1e-4, 1e-12)
     lanes = KernelCall(differentiate_in_lanes, LAW)(problem.body_in_lanes, speeds, states)
 
     moduli = [np.abs(np.linalg.eigvals(matrices)).max(axis=1) for matrices in (fine, lanes)]

@@ -268,7 +268,7 @@ def by_variation(of_one_sine: Any, of_varying: Any, **options: Any) -> Any:
 
 
 def _varies(record: Any) -> bool:
-    """Whether the field ``varying`` of a record, or of the body it holds, is filled; record: it, or its type."""
+    """Check that the field ``varying`` of a record, or of the body it holds, is filled; record: it, or its type."""
     varying, body = _part(record, "varying"), _part(record, "body")
     return len(varying) > 0 if varying is not None else body is not None and _varies(body)
 

@@ -105,8 +105,9 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
         return BristlePoint(scene, law)
     # in a contact that keeps its stiffness, deflections change with the normal load, too
     if line and law.exact_path() and not scene.constant_contact:
-        slides = VaryingPoint(scene, law)
-        if slides.keeps_its_side():
+        slip = VaryingSlip.of(scene.signals(), scene.motion().normal_load)
+        if slip.keeps_its_side(scene.belt_speed):
+            slides = VaryingPoint(scene, law, slip)
             slides.model = ModelWord.SLIP_ONE_WAY
             return slides
     return MemoryPoint(scene, law, tolerance)

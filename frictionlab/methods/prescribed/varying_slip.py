@@ -69,6 +69,10 @@ class VaryingSlip(NamedTuple):
         """Whether nothing oscillates across the belt."""
         return self.across.size() == 0.0
 
+    def keeps_its_side(self, belt_speed: float) -> bool:
+        """Check that slip along the belt never reverses and never rests."""
+        return not -self.along.negative().maximum() <= belt_speed <= self.along.maximum()
+
     def velocity(self, tau: Floats, k: PieceNumbers) -> Vectors:
         """x1' + i x2' at times on the pieces k."""
         return np.asarray(self.along.at(tau, k)[0] + 1j * self.across.at(tau, k)[0])
@@ -200,11 +204,6 @@ class VaryingPoint:
         along, load = self.slip.along.minus(self.belt_speed), self.slip.normal_load
         k = np.flatnonzero(along.at_rest() & self.slip.across.at_rest())
         return float(load.integral(along.edges[k], along.edges[k + 1], k).sum()) / along.period
-
-    def keeps_its_side(self) -> bool:
-        """Check that slip along the belt never reverses and never rests."""
-        slip = self.slip.along.minus(self.belt_speed)
-        return slip.maximum() < 0.0 or slip.negative().maximum() < 0.0
 
     def _by_quadrature(self, turns: MeanDirection | None) -> tuple[complex, float]:
         """Mean and error; along the belt, the share of friction at vanishing speed in closed form.

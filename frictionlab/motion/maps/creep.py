@@ -60,8 +60,9 @@ def _may_creep(flow: Flow, w: Any, a: Any, work: Work) -> None:
     work.creep[SCALE] = 10.0**high / HALVES
     pull = friction_in_mode(law, work, w) + a / normal_load(flow.body, instant_near(flow, flow.anchor))
     crawl = WITHOUT_INERTIA * slow
-    if far < crawl and length(pull) >= length(friction_in_mode(law, work, crawl * along)):
-        # a mass that is pulled harder than the friction of a crawl starts to slip
+    if far < crawl and length(pull) >= length(friction_in_mode(law, work, 2.0 * crawl * along)):
+        # a mass that is pulled harder than the friction of two crawls starts to slip so; under a weaker pull it would
+        # fall back to less than a crawl, step by step
         work.start[U] = (2.0 * crawl / length(pull)) * pull
 
 

@@ -32,10 +32,10 @@ PERIODS = 400
 """Largest number of periods for which a memory is followed plainly from each start."""
 FINE, SAME_MEAN = 1e-9, 1e-6
 """Accuracy of maps with which starts are followed, over the normal load, and largest range of equal means."""
-SLOW, FEW, FINEST_MAP = 1e-3, 4, 1e-11
+SLOW, FEW, FINEST_MAP = 1e-3, 4, 1e-13
 """Largest share of a deviation that a slow contact forgets in a period; for how many periods its mean is watched.
 
-FINEST_MAP: accuracy of their maps."""
+FINEST_MAP: accuracy of their maps, whose errors count by that share."""
 ENDED = "ended here, with no memory and with that of steady sliding"
 HOLDS = "a deflection keeps what it began with, for ever or for thousands of periods"
 NO_END = "no steady state found: the memory does not repeat within {} periods"
@@ -186,7 +186,7 @@ class MemoryPoint:
         # closing may fail beside a corner of the map, to which starts far apart come all the same
         self.state, self.tested = self.reached[0], f"tested: {len(ends)} starts {ENDED}"
         follow, speed = self.problem.followed_on, self.scene.belt_speed
-        fine, coarse = (follow(speed, self.state, 1, each).means[0] for each in (FINEST_MAP, FINE))
+        fine, coarse = (follow(speed, self.state, 1, each).means[0] for each in (1e-11, FINE))
         return PrescribedMean(complex(fine), float(spread + 2.0 * abs(coarse - fine) + FINE))
 
     def _left_open(self, means: list[float], reason: str) -> PrescribedMean:

@@ -133,10 +133,6 @@ class ModelWord(StrEnum):
     UNDRIVEN = "no drive", "exact needs a drive, whose period is that of the motion"
     LOAD_ACROSS = "load across", "exact works along one line: this scene has a transverse load"
     BELT_ACROSS = "belt across", "exact works along one line: this scene has a belt that vibrates across"
-    RESONANCE = (
-        "resonance",
-        "exact needs more damping for a sine within 1e-3 of resonance, unless it is all that changes in time",
-    )
     STIFF_CONTACT = (
         "stiff contact",
         "exact cannot keep the stiffness of bristles while the normal load changes",

@@ -18,8 +18,9 @@ from strategies import MU, angles, scenes_in_the_plane, scenes_on_the_line, sign
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.coulomb import Coulomb
-from frictionlab.methods.exact.continuation import oscillator_at
+from frictionlab.methods.exact.forcing import forcing_of
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.exact.oscillator import oscillator_at
 from frictionlab.methods.exact.return_map import passage
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED
 from frictionlab.methods.periodic.problem import PeriodicProblem
@@ -94,9 +95,9 @@ def friction_of(scene):
 
 
 @njit
-def followed(mass, mu, belt_speed, state, end, small, most):
+def followed(forcing, belt_speed, state, end, small, most):
     """Period after period (the part up to ``end``) until one changes less than ``small``; and its impulse."""
-    body, x, w, impulse = oscillator_at(mass, mu, belt_speed), state[0], state[1], np.nan
+    body, x, w, impulse = oscillator_at(forcing, belt_speed), state[0], state[1], np.nan
     for _ in range(most):
         there = passage(body, x, w, 0.0, end * body.period)
         change = math.hypot(there.x - x, there.w - w)
@@ -113,11 +114,11 @@ states = st.tuples(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
 @deep("an integrator to compile")
 @given(scene=scenes_on_the_line(speed=(0.01, 1.2)), start=states)
 def test_every_start_settles_to_the_same_steady_state(scene, start):
-    found, mass, v = exact(scene), scene.mass(), abs(scene.belt_speed)
+    found, forcing, v = exact(scene), forcing_of(scene.mass(), MU), abs(scene.belt_speed)
     assume(found.floquet < 0.99)
     scale = np.abs(found.orbit.x).max() + np.abs(found.orbit.v).max() + v + friction_of(scene)
     small = 1e-11 * scale * (1.0 - found.floquet)
-    _, _, impulse = compiled(followed)(mass, MU, v, scale * np.array(start), 1.0, small, 20_000)
+    _, _, impulse = compiled(followed)(forcing, v, scale * np.array(start), 1.0, small, 20_000)
     mean = -impulse * scene.frequency / (2.0 * math.pi * scene.normal_load)
 
     assert mean == pytest.approx(
@@ -150,9 +151,10 @@ def test_the_neighbours_a_curve_comes_from_do_not_change_a_point_in_the_plane(sc
 
 @given(scene=scenes_on_the_line(), one=states, other=states, end=st.floats(0.01, 1.0))
 def test_two_motions_on_the_line_never_move_apart_in_energy(scene, one, other, end):
-    mass, v, size = scene.mass(), abs(scene.belt_speed), 5.0 * scene.drive.amplitude
+    forcing, v = forcing_of(scene.mass(), MU), abs(scene.belt_speed)
+    size = 5.0 * scene.drive.amplitude
     before = size * np.array([one, other])
-    after = np.array([compiled(followed)(mass, MU, v, state, end, 0.0, 1)[:2] for state in before])
+    after = np.array([compiled(followed)(forcing, v, state, end, 0.0, 1)[:2] for state in before])
 
     apart = np.hypot(*(after[1] - after[0]))
     rounding = 1e-13 * (np.abs(before).max() + size / scene.damping_ratio + v + friction_of(scene))

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.compile.dispatch import by_variation
+from frictionlab.methods.exact.forcing import FASTEST, SHORTEST, Forcing
 from frictionlab.methods.exact.legs import (
     STICK,
     cross_corner,
@@ -21,16 +21,11 @@ from frictionlab.methods.exact.legs import (
     stick_leg,
 )
 from frictionlab.methods.exact.oscillator import (
-    ForcedOscillator,
-    canonical,
-    count_pieces,
-    free_rate,
+    at_piece,
     next_corner,
-    piece_of,
+    oscillator_at,
     response_at,
-    shortest_period,
     vibration_at,
-    with_piece,
 )
 from frictionlab.methods.exact.return_map import (
     LEGS_IN_ALL,
@@ -43,7 +38,6 @@ from frictionlab.methods.exact.return_map import (
     rounding,
 )
 from frictionlab.motion.orbit.recorder import NODES, Track, grown, track_of
-from frictionlab.scene.body import Mass
 from frictionlab.values.quantities import EPSILON
 
 MEAN, ERROR, FLOQUET, STATE_X, STATE_W, LEGS, RESIDUAL, ROUNDING, FOUND, COLUMNS = range(10)
@@ -52,65 +46,27 @@ MOST_PERIODS = 100_000
 
 
 @njit
-def continue_in_speed(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> None:
-    """Row i of ``out``: MEAN to FOUND for belt_speeds[i], ascending; FOUND: 1 without slip reversal, else 2.
-
-    One sine: for belt speeds >= 0. Else mass.varying is a ``Forcing``.
-    """
+def continue_in_speed(forcing: Forcing, belt_speeds: Any, out: Any) -> None:
+    """Row i of ``out``: MEAN to FOUND for belt_speeds[i], ascending; FOUND: 1 without slip reversal, else 2."""
     x, w, last = 0.0, 0.0, math.inf
     for i in range(belt_speeds.size):
-        body = oscillator_at(mass, coefficient, belt_speeds[i])
+        body = oscillator_at(forcing, belt_speeds[i])
         # Above V_lin slip never reverses and the motion is linear: no search. Without damping a free oscillation
         # would remain.
-        if exceeds_friction_free_speed(mass, belt_speeds[i]) and body.damping > 0.0:
+        if abs(belt_speeds[i]) >= forcing.table[FASTEST] and body.damping > 0.0:
             x, w = friction_free_start(body)
-            write_reversal_free(body, coefficient, x, w, out[i])
+            write_reversal_free(body, forcing.coefficient, x, w, out[i])
         else:
             # Start from the neighbour's state with the same velocity: w = x' - belt_speed.
             x, w = friction_free_start(body) if last == math.inf else (x, w + (last - belt_speeds[i]))
             fixed = periodic_state(body, x, w, MOST_MAPS)
             x, w = fixed.x, fixed.w
-            if slips_one_way(body, fixed):
-                write_reversal_free(body, coefficient, x, w, out[i])
+            # No step can have passed a reversal.
+            if fixed.map.alike != 0.0 and fixed.residual <= 16.0 * rounding(body, x, w):
+                write_reversal_free(body, forcing.coefficient, x, w, out[i])
             else:
-                write_fixed(body, fixed, mass.normal_load, out[i])
+                write_fixed(body, fixed, forcing.normal_load, out[i])
         last = belt_speeds[i]
-
-
-def _body_of_one_sine(mass: Mass, coefficient: float, belt_speed: float) -> Any:
-    friction = coefficient * mass.normal_load
-    return canonical(0.5 * mass.damping, mass.frequency, abs(mass.force), friction, belt_speed)
-
-
-def _body_of_pieces(mass: Mass, coefficient: float, belt_speed: float) -> Any:
-    forcing, damping = mass.varying, 0.5 * mass.damping
-    rate = free_rate(damping)
-    numbers = damping, rate, forcing.period, coefficient * mass.normal_load, belt_speed
-    return ForcedOscillator(*numbers, forcing.size, forcing.load, forcing.jolt, 0, forcing)
-
-
-oscillator_at = by_variation(_body_of_one_sine, _body_of_pieces)
-"""(mass, coefficient, belt_speed): the canonical scene at this belt speed."""
-
-
-exceeds_friction_free_speed = by_variation(
-    lambda mass, belt_speed: belt_speed >= friction_free_speed(mass), lambda mass, belt_speed: False
-)
-"""(mass, belt_speed): whether the belt is known to be so fast that slip never reverses."""
-
-
-slips_one_way = by_variation(
-    lambda body, fixed: False,
-    lambda body, fixed: fixed.map.alike != 0.0 and fixed.residual <= 16.0 * rounding(body, fixed.x, fixed.w),
-)
-"""(body, fixed): whether this fixed point turns out to have slip of one sign, which no step can have passed."""
-
-
-@inner
-def friction_free_speed(mass: Mass) -> float:
-    """V_lin, the velocity amplitude without friction; infinite at undamped resonance."""
-    stiffness = (1.0 - mass.frequency) * (1.0 + mass.frequency)
-    return abs(mass.force) * mass.frequency / math.hypot(stiffness, mass.damping * mass.frequency)
 
 
 @inner
@@ -119,7 +75,7 @@ def write_reversal_free(body: Any, coefficient: float, x: float, w: float, row: 
     rate = body.damping if body.damping <= 1.0 else 1.0 / (body.damping + body.rate)
     row[MEAN], row[ERROR] = math.copysign(coefficient, body.belt_speed), 8.0 * EPSILON * coefficient
     row[FLOQUET] = math.exp(-rate * body.period)
-    row[STATE_X], row[STATE_W], row[LEGS] = x, w, 1.0 + count_pieces(body)
+    row[STATE_X], row[STATE_W], row[LEGS] = x, w, 1.0 + body.varying.segments
     row[RESIDUAL], row[ROUNDING], row[FOUND] = 0.0, rounding(body, x, w), 1.0
 
 
@@ -134,19 +90,19 @@ def write_fixed(body: Any, fixed: Fixed, normal_load: float, row: Any) -> None:
 
 
 @njit
-def iterate_until_fixed(mass: Mass, coefficient: float, belt_speed: float, start: Any, row: Any) -> int:
+def iterate_until_fixed(forcing: Forcing, belt_speed: float, start: Any, row: Any) -> int:
     """Iterate the map from start = (x, w, canonical time) until a period changes nothing; -1 where it never does.
 
     Writes MEAN to ROUNDING (ERROR: rounding alone) and returns the number of periods.
     """
-    body = oscillator_at(mass, coefficient, belt_speed)
+    body = oscillator_at(forcing, belt_speed)
     first = passage(body, start[0], start[1], start[2], body.period)
     x, w, work = first.x, first.w, 0
     for periods in range(MOST_PERIODS):
         here = passage(body, x, w, 0.0, body.period)
         residual = math.hypot(here.x - x, here.w - w)
         if residual <= rounding(body, x, w):
-            write_fixed(body, Fixed(x, w, here, residual, periods), mass.normal_load, row)
+            write_fixed(body, Fixed(x, w, here, residual, periods), forcing.normal_load, row)
             return periods
         x, w, work = here.x, here.w, work + here.legs
         if work > LEGS_IN_ALL:
@@ -176,7 +132,7 @@ def tabulate_legs(body: Any, state: Any, start: float, end: float, legs: Any, fi
         left = stop - tau
         leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)
         legs[row, TAU], legs[row, DURATION] = tau, leg.duration
-        legs[row, X], legs[row, W], legs[row, MODE], legs[row, PIECE] = x, w, mode, piece_of(body)
+        legs[row, X], legs[row, W], legs[row, MODE], legs[row, PIECE] = x, w, mode, body.piece
         row = row + 1
         tau = tau + leg.duration if leg.event != 0.0 else stop
         x, w, mode = leg.x, leg.w, leg.following
@@ -195,7 +151,7 @@ def panel_length(body: Any, r: float, left: float) -> float:
         fast = body.damping + body.rate
         slow = 1.0 / fast
     free = 0.25 * math.pi if r * slow < 40.0 else body.period
-    return min(min(0.125 * shortest_period(body), free), min(max(1.0 / fast, 0.5 * r), left))
+    return min(min(0.125 * body.varying.table[SHORTEST], free), min(max(1.0 / fast, 0.5 * r), left))
 
 
 @inner
@@ -251,7 +207,7 @@ def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, trac
     panel, now = track.filled[0], 0.0
     for place in range(table.rows):
         leg, r = table.legs[(place + table.before) % table.rows], 0.0
-        body = with_piece(body, int(leg[PIECE]))
+        body = at_piece(body, int(leg[PIECE]), body.belt_speed)
         start = free_start(body, leg)
         while r < leg[DURATION]:
             length = panel_length(body, r, leg[DURATION] - r)
@@ -266,29 +222,23 @@ def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, trac
     track.filled[0] = panel
 
 
-side_solved = by_variation(
-    lambda mass, belt_speed: -1.0 if belt_speed < 0.0 else 1.0, lambda mass, belt_speed: 1.0
-)
-"""(mass, belt_speed): -1.0 where the mirror image of the scene was solved."""
-
-
 @njit
-def make_orbits(mass: Mass, coefficient: float, belt_speeds: Any, states: Any, ends: Any) -> Track:
+def make_orbits(forcing: Forcing, belt_speeds: Any, states: Any, ends: Any) -> Track:
     """The panels of every orbit, one orbit after another, that of belt speed i before panel ends[i].
 
-    states [n, 4]: canonical (x, w), the legs of a period, 0 where there is no orbit, canonical time of tau = 0.
+    states [n, 5]: canonical (x, w), the legs of a period, 0 where there is no orbit, canonical time of tau = 0, and
+    -1 where the mirror image of the scene was solved, else 1.
     """
     room, track = 64, track_of(64)
     for i in range(belt_speeds.size):
-        x, w, legs, shift = states[i, 0], states[i, 1], int(states[i, 2]), states[i, 3]
+        x, w, legs, shift, side = states[i, 0], states[i, 1], int(states[i, 2]), states[i, 3], states[i, 4]
         if legs > 0:
-            side = side_solved(mass, belt_speeds[i])
-            body = oscillator_at(mass, coefficient, side * belt_speeds[i])
+            body = oscillator_at(forcing, side * belt_speeds[i])
             table = legs_of_orbit(body, x, w, shift, legs)
             needed = track.filled[0] + count_panels(body, table.legs, table.rows)
             if needed > room:
                 room = 2 * needed
                 track = grown(track, room)
-            note_orbit(body, table, mass.normal_load, side, track)
+            note_orbit(body, table, forcing.normal_load, side, track)
         ends[i] = track.filled[0]
     return track

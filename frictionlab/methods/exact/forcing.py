@@ -1,4 +1,4 @@
-"""What shakes and presses a mass on the line, for closed-form legs: sums of sines, and parabolas between corners.
+"""Loads, belt and normal load along a line, for closed-form legs: sums of sines, and parabolas between corners.
 
 In the position less the path p of the belt's vibration v = p', y = x - p, the belt is steady and the equation of
 motion that of the canonical scene, under load - 2 damping v - v' - p. Straight lines of load and belt make this a
@@ -13,90 +13,136 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.scene.body import Mass
-from frictionlab.scene.varying import Varying, Waves
+from frictionlab.scene.varying import Varying, Waves, of_one_sine
 from frictionlab.values.quantities import Floats
 
-# Columns of the waves: sine and cosine parts of the load, of the response to it, of what the varying normal load adds
-# to the limit of friction, of the response to that, and of the belt's velocity.
-FREQUENCY, LOAD, RESPONSE, PRESS, PRESSED, BELT, WAVE_COLUMNS = 0, 1, 3, 5, 7, 9, 11
-# Columns of the pieces: times; value and derivatives at their start of the load and of the response to it (three
-# each), of what is added to the limit of friction, of the belt's velocity; the belt's path and its velocity's jump.
-START, STOP, PARABOLA, ARC, RAMP, LINE, PATH, JUMP, PIECE_COLUMNS = 0, 2, 4, 7, 10, 12, 14, 15, 16
+# One table for kernels: numbers of all, rows of waves, rows of pieces.
+SHORTEST, SWING, PUSH, LOWEST, HIGHEST, FASTEST, HEAD = range(7)
+"""Numbers of all.
 
+SHORTEST: time in which any load may turn round. SWING, PUSH: bounds on the velocity of the response and on the third
+derivative of the loads. LOWEST, HIGHEST: least load + press, largest load - press. FASTEST: speed of the belt from
+which slip never reverses, infinite if not known.
+"""
+FREQUENCY, LOAD, RESPONSE, PRESS, PRESSED, BELT, GROWING, GROWS, WAVE_COLUMNS = 0, 1, 3, 5, 7, 9, 11, 13, 14
+"""Columns of the waves: sine and cosine parts of the load, of the response to it, of what the varying normal load
+adds to the limit of friction, of the response to that, and of the belt's velocity.
+
+GROWS is 1 near undamped resonance, where the response from rest at tau = 0 to GROWING and PRESS is added: the
+periodic one is too large.
+"""
+START, STOP, PARABOLA, ARC, RAMP, LINE, PATH, JUMP, PIECE_COLUMNS = 0, 2, 4, 7, 10, 12, 14, 15, 16
+"""Columns of the pieces: times; value and derivatives at their start of the load and of the response to it (three
+each), of what is added to the limit of friction, of the belt's velocity; the belt's path and its velocity's jump."""
 
 LEAST_BEND = 1e-6
 """Share of a function, in its period, that the bound on its third derivative is at least: zero for parabolas, it
 would let the cubics below them overflow."""
+RESONANT = 1e-3
+"""Dynamic stiffness below which a load is near undamped resonance."""
 
 
 class Forcing(NamedTuple):
-    """The functions of time of a scene that are not one sine.
+    """The canonical scenes of a curve, at any belt speed; all that varies repeats after ``period``.
 
-    waves [n, WAVE_COLUMNS], pieces [m, PIECE_COLUMNS], ascending; both repeat after ``period``. shortest: time in
-    which any of it may turn round. Bounds: load and size on the load and the response, each wave counted as often as
-    it comes round, for its angle is rounded in proportion; swing on the velocity; push and jolt on third derivatives
-    of the load and fourth ones of the response. lowest of load + press, highest of load - press.
+    friction: its limit under the mean normal load, coefficient times ``normal_load``. Bounds, each wave counted as
+    often as it comes round, for its angle is rounded in proportion: load and size on the load and the response; jolt
+    on the fourth derivative of the response. terms, segments: counts of the waves and the pieces. smooth: whether
+    waves are all; presses: whether the normal load changes; steady: whether the closed-form response repeats; alone:
+    whether it is that of one wave of the load. table: what kernels read.
     """
 
-    waves: Floats
-    pieces: Floats
+    damping: float
     period: float
-    shortest: float
+    coefficient: float
+    normal_load: float
+    friction: float
     load: float
     size: float
-    swing: float
-    push: float
     jolt: float
-    lowest: float
-    highest: float
+    terms: int
+    segments: int
+    smooth: bool
+    presses: bool
+    steady: bool
+    alone: bool
+    table: Floats
+
+    @property
+    def waves(self) -> Floats:
+        """Rows of the waves [terms, WAVE_COLUMNS]."""
+        return self.table[HEAD : HEAD + self.terms * WAVE_COLUMNS].reshape(-1, WAVE_COLUMNS)
+
+    @property
+    def pieces(self) -> Floats:
+        """Rows of the pieces [segments, PIECE_COLUMNS]."""
+        return self.table[HEAD + self.terms * WAVE_COLUMNS :].reshape(-1, PIECE_COLUMNS)
 
     def belt_at_start(self) -> tuple[float, float]:
-        """Path and velocity of the belt's vibration just after tau = 0."""
+        """Return path and velocity of the belt's vibration just after tau = 0."""
         path = self.pieces[0, PATH] - (self.waves[:, BELT] / self.waves[:, FREQUENCY]).sum()
         return float(path), float(self.pieces[0, LINE] + self.waves[:, BELT + 1].sum())
 
     def belt_jumps(self) -> bool:
-        """Whether the belt's velocity does."""
+        """Check whether the belt's velocity does."""
         return bool(np.any(self.pieces[:, JUMP] != 0.0))
+
+    def unbounded(self) -> bool:
+        """Check for an undamped mass that resonates and whose friction takes less energy than its load gives.
+
+        In a period of the free motion friction of the limit f takes at most 4 f a of a motion of amplitude a, a load
+        of amplitude P in resonance gives pi P a.
+        """
+        at_resonance = self.waves[self.waves[:, FREQUENCY] == 1.0]
+        clear = self.damping == 0.0 and self.smooth and not self.presses
+        return clear and self.friction < 0.25 * math.pi * float(_sizes(at_resonance, LOAD).sum())
 
 
 def forcing_of(mass: Mass, coefficient: float) -> Forcing:
-    """Of a mass with what varies along x1; coefficient: of friction."""
-    varying, b = mass.varying, 0.5 * mass.damping
-    waves, pieces = _waves(varying, b, coefficient), _pieces(varying, b, coefficient)
-    period, frequency = float(varying.edges[-1]), waves[:, FREQUENCY]
+    """Return the forcing of a mass by what varies along x1; coefficient: of friction.
+
+    If a sine of the load is all, time begins where it rises through zero.
+    """
+    varying = mass.varying
+    if not varying:
+        varying = of_one_sine(abs(mass.force), 0.0, mass.frequency)
+        varying = varying._replace(edges=np.array([0.0, 2.0 * math.pi / mass.frequency]))
+    b, period = 0.5 * mass.damping, float(varying.edges[-1])
+    (waves, fastest), pieces = _waves(varying, b, coefficient), _pieces(varying, b, coefficient)
+    frequency = waves[:, FREQUENCY]
     turns = np.maximum(1.0, frequency * period / (2.0 * math.pi))
-    loads = _sizes(waves, LOAD) + _sizes(waves, PRESS)
+    presses = _sizes(waves, PRESS)
+    loads = _sizes(waves, LOAD) + presses
+    # The growing response is bounded by half of the load times the time, and by as much as it was at the start.
+    grown = waves[:, GROWS] * (_sizes(waves, GROWING) + presses) * (0.5 * period + 1.0)
     responses = _sizes(waves, RESPONSE) + _sizes(waves, PRESSED)
     ramps, slopes = _reach(pieces, RAMP, 2), np.abs(pieces[:, RAMP + 1])
-    load = (loads * turns).sum() + (_reach(pieces, PARABOLA, 3) + ramps).max()
+    load = float((loads * turns).sum() + (_reach(pieces, PARABOLA, 3) + ramps).max())
     arcs = (_reach(pieces, ARC, 3) + ramps + mass.damping * slopes).max()
-    swing = (responses * turns * frequency).sum() + (_reach(pieces, ARC + 1, 2) + slopes).max()
+    swing = ((responses + grown) * turns * frequency).sum() + (_reach(pieces, ARC + 1, 2) + slopes).max()
+    push = (loads * frequency**3).sum() + LEAST_BEND * load / period**3
+    smooth = len(pieces) == 1 and not pieces[:, PARABOLA:].any()
+    changes = bool(presses.any() or pieces[:, RAMP : RAMP + 2].any())
+    steady = smooth and not waves[:, GROWS].any()
+    extremes = [side * _least(waves, pieces, side, smooth) for side in (1.0, -1.0)]
+    numbers = 2.0 * math.pi / varying.quickest, swing, push, *extremes, fastest if smooth else math.inf
     return Forcing(
-        waves=waves,
-        pieces=pieces,
+        damping=b,
         period=period,
-        shortest=2.0 * math.pi / varying.quickest,
-        load=float(load),
-        size=float((responses * turns).sum() + max(1.0, period / (2.0 * math.pi)) * arcs),
-        swing=float(swing),
-        push=float((loads * frequency**3).sum() + LEAST_BEND * load / period**3),
-        jolt=float((responses * frequency**4).sum() + LEAST_BEND * swing / period**3),
-        lowest=_least(waves, pieces, 1.0),
-        highest=-_least(waves, pieces, -1.0),
+        coefficient=coefficient,
+        normal_load=mass.normal_load,
+        friction=coefficient * mass.normal_load,
+        load=load,
+        size=float(((responses + grown) * turns).sum() + max(1.0, period / (2.0 * math.pi)) * arcs),
+        jolt=float((responses * frequency**4 + 2.0 * grown).sum() + LEAST_BEND * swing / period**3),
+        terms=len(waves),
+        segments=len(pieces),
+        smooth=smooth,
+        presses=changes,
+        steady=steady,
+        alone=steady and len(waves) == 1 and not changes,
+        table=np.concatenate([numbers, waves.ravel(), pieces.ravel()]),
     )
-
-
-def resonates(mass: Mass, within: float) -> bool:
-    """Whether a sine among the loads is so near undamped resonance that the response is large beyond use."""
-    varying = mass.varying
-    frequency = np.concatenate(
-        [
-            each.frequency[each.sine.real**2 + each.cosine.real**2 > 0.0]
-            for each in (varying.load.waves, varying.normal_load.waves)
-        ]
-    )
-    return bool(np.any(np.abs(_stiffness(frequency, 0.5 * mass.damping)) < within))
 
 
 def _stiffness(frequency: Floats, b: float) -> Any:
@@ -104,25 +150,33 @@ def _stiffness(frequency: Floats, b: float) -> Any:
     return (1.0 - frequency) * (1.0 + frequency) + 2j * b * frequency
 
 
-def _waves(varying: Varying, b: float, coefficient: float) -> Floats:
+def _waves(varying: Varying, b: float, coefficient: float) -> tuple[Floats, float]:
+    """Return the rows of the waves, and the largest velocity that all of them give."""
     every = varying.load.waves, varying.belt.waves, varying.normal_load.waves
     frequency = np.unique(np.concatenate([each.frequency for each in every]))
     if len(frequency) == 0:
-        return np.zeros((0, WAVE_COLUMNS))
+        return np.zeros((0, WAVE_COLUMNS)), 0.0
     load, belt, press = (_phasors(each, frequency) for each in every)
     press = coefficient * press
     path, dynamic = belt / (1j * frequency), _stiffness(frequency, b)
     # A belt that swings in undamped resonance pushes the mass through friction alone.
-    dynamic[(load == 0.0) & (press == 0.0)] = 1.0
+    pushed = (load != 0.0) | (press != 0.0)
+    grows = pushed & (np.abs(dynamic) < RESONANT)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        answer, pressed = (np.where(each == 0.0, 0.0, each / dynamic) for each in (load, press))
+    fastest = float((frequency * (np.abs(answer - path) + np.abs(pressed))).sum())
     columns = [
         load - (2.0 * b + 1j * frequency) * belt - path,
-        load / dynamic - path,
+        np.where(grows, 0.0, answer) - path,
         press,
-        press / dynamic,
+        np.where(grows, 0.0, pressed),
         belt,
+        np.where(grows, load, 0.0),
     ]
-    table = np.column_stack([frequency, *(part for each in columns for part in (each.real, each.imag))])
-    return np.ascontiguousarray(table[np.any(table[:, 1:] != 0.0, axis=1)])
+    table = np.column_stack(
+        [frequency, *(part for each in columns for part in (each.real, each.imag)), grows]
+    )
+    return np.ascontiguousarray(table[np.any(table[:, 1:] != 0.0, axis=1)]), fastest
 
 
 def _phasors(waves: Waves, frequency: Floats) -> Any:
@@ -186,10 +240,12 @@ SAMPLES_A_WAVE = 16
 """In the time of the quickest wave, from which the extremes are sought."""
 
 
-def _least(waves: Floats, pieces: Floats, side: float) -> float:
-    """The least value of press + side * load over a period."""
+def _least(waves: Floats, pieces: Floats, side: float, smooth: bool) -> float:
+    """Find the least value of press + side * load over a period."""
     if len(waves) == 0:
         return _least_of_parabolas(pieces, side)
+    if smooth and len(waves) == 1:
+        return -float(np.hypot(*(waves[0, PRESS : PRESS + 2] + side * waves[0, LOAD : LOAD + 2])))
     length, every = _lengths(pieces), np.arange(len(pieces))
     # Of many values, those below their neighbours improved by Newton's method.
     count = 9 + math.ceil(SAMPLES_A_WAVE * length.max() * waves[:, FREQUENCY].max() / (2.0 * math.pi))

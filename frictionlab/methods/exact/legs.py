@@ -14,14 +14,13 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_variation
-from frictionlab.methods.exact.forcing import JUMP, START
+from frictionlab.methods.exact.forcing import JUMP, PIECE_COLUMNS, START
 from frictionlab.methods.exact.oscillator import (
+    at_piece,
     holding_at,
     largest_push,
     largest_swing,
     response_at,
-    with_piece,
 )
 from frictionlab.values.quantities import EPSILON
 
@@ -260,20 +259,16 @@ def starting_mode(body: Any, tau: float, x: float, w: float) -> float:
     return after_rest(load - 2.0 * body.damping * body.belt_speed - x, limit)
 
 
-def _no_corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, float, float]:
-    return body, w, mode, 1.0
-
-
-def _corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, float, float]:
-    pieces = body.varying.pieces
-    following = (body.piece + 1) % pieces.shape[0]
-    body = with_piece(body, following)
-    w = w - pieces[following, JUMP]
-    after = starting_mode(body, pieces[following, START], x, w)
+@inner
+def cross_corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, float, float]:
+    """Return, at the end of a piece, the body in the next one, the slip velocity and the mode there, and the
+    derivative of that velocity by the one before."""
+    varying = body.varying
+    if varying.smooth:
+        return body, w, mode, 1.0
+    following = body.piece + 1 if body.piece + 1 < varying.segments else 0
+    body, at = at_piece(body, following, body.belt_speed), varying.pieces + PIECE_COLUMNS * following
+    w = w - varying.table[at + JUMP]
+    after = starting_mode(body, varying.table[at + START], x, w)
     # Every velocity near zero becomes zero where the mass comes to rest here, as at the end of a leg of slip.
     return body, w, after, 0.0 if after == STICK and mode != STICK else 1.0
-
-
-cross_corner = by_variation(_no_corner, _corner)
-"""(body, x, w, mode): at the end of a piece, the body in the next one, the slip velocity and the mode there; the
-derivative of that velocity by the one before."""

@@ -16,8 +16,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Ledger, Method, Multipliers, beyond_linear
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.continuation import make_orbits
-from frictionlab.methods.exact.forcing import forcing_of, resonates
-from frictionlab.methods.exact.oscillator import RESONANT
+from frictionlab.methods.exact.forcing import FASTEST, HIGHEST, LOWEST, forcing_of
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.method import suggest_shooting
 from frictionlab.methods.words import ModelWord
@@ -25,7 +24,6 @@ from frictionlab.motion.orbit.record import Orbits
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
-from frictionlab.theory import friction_free_velocity
 from frictionlab.values.quantities import Floats
 
 SALTATION = 1e-8
@@ -64,8 +62,6 @@ def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
         loaded = scene.signals().load[1] != Signal()
         return (ModelWord.LOAD_ACROSS if loaded else ModelWord.BELT_ACROSS).sentence
-    if scene.degrees_of_freedom > 0 and not scene.is_harmonic and resonates(scene.mass(), RESONANT):
-        return ModelWord.RESONANCE.sentence
     return None
 
 
@@ -124,8 +120,7 @@ class Exact(Method):
         """Answer scenes that differ in belt speed alone."""
         if scenes[0].degrees_of_freedom == 0:
             return solve_prescribed(scenes, law, tolerance)
-        curve_of = _Curve if scenes[0].is_harmonic else _VaryingCurve
-        answers = curve_of(scenes, law.sliding_friction(1.0), tolerance).solved()
+        answers = _Curve(scenes, law.sliding_friction(1.0), tolerance).solved()
         if self.certify:
             from frictionlab.methods.exact.proof.prove import certified  # python-flint need not be there
 
@@ -136,15 +131,16 @@ class Exact(Method):
 class _Curve(Ledger):
     """The scenes of one curve on their way to answers.
 
-    sides: -1 where the mirror image of a scene is solved, so that the belt moves ahead.
+    odd: whether one sine is all: turned round, a scene is itself half a period later on a belt that moves the other
+    way, and is solved on the one that moves ahead. sides: -1 where that is its mirror image.
     """
 
     def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
         self.scenes, self.coefficient, self.tolerance = scenes, coefficient, tolerance
-        self.mass = scenes[0].mass()
-        self.limit = coefficient * self.mass.normal_load
+        self.mass, self.odd = scenes[0].mass(), scenes[0].is_harmonic
+        self.forcing = forcing_of(self.mass, coefficient)
         self.belt_speeds = belt_speeds_of(scenes)
-        self.sides = np.where(self.belt_speeds < 0.0, -1.0, 1.0)
+        self.sides = np.where(self.odd & (self.belt_speeds < 0.0), -1.0, 1.0)
         n = len(scenes)
         super().__init__(n)
         self.status, self.error_kind, self.unique = ["ok"] * n, ["estimated"] * n, [PROVED] * n
@@ -157,7 +153,8 @@ class _Curve(Ledger):
         settled = [i for i in special.tolist() if self._has_no_single_answer(i)]
         open_points = np.delete(np.arange(len(self.scenes)), settled)
         self._solve(open_points)
-        self._use_symmetry(open_points)
+        if self.odd:  # on a belt at rest the orbit is its own mirror image half a period later
+            self.rows[open_points[self.belt_speeds[open_points] == 0.0], curve.MEAN] = 0.0
         self._judge(open_points)
         if self.scenes[0].degrees_of_freedom == 2:
             self.model = [f"{text}; {ModelWord.X2_DECAYS}" if text else text for text in self.model]
@@ -177,19 +174,20 @@ class _Curve(Ledger):
         )
 
     def _may_have_no_single_answer(self) -> NDArray[np.bool_]:
-        undamped = self.mass.damping == 0.0
-        return (self.belt_speeds == 0.0) | np.full(len(self.scenes), undamped)
+        undamped, jumps = self.mass.damping == 0.0, self.forcing.belt_jumps()
+        return (self.belt_speeds == 0.0) & (not jumps) | np.full(len(self.scenes), undamped)
 
     def _has_no_single_answer(self, i: int) -> bool:
         """Settle the cases where the steady state depends on the start, or does not exist."""
-        force, speed = abs(self.mass.force), float(self.belt_speeds[i])
-        undamped = self.mass.damping == 0.0
-        if speed == 0.0 and force <= self.limit:
-            spread = (self.limit - force) / self.mass.normal_load
-            self._depends_on_start(i, (0.0 - spread, spread), _permanent_stick(0.0 - spread, spread))
-        elif undamped and (force == 0.0 or abs(speed) >= friction_free_velocity(self.scenes[i])):
+        forcing, speed = self.forcing, float(self.belt_speeds[i])
+        # At rest the force of friction is the load less the position; of the load the mean is zero.
+        low, high = forcing.table[HIGHEST] - forcing.friction, forcing.table[LOWEST] + forcing.friction
+        if speed == 0.0 and not forcing.belt_jumps() and low <= high:
+            bounds = float(low / forcing.normal_load), float(high / forcing.normal_load)
+            self._depends_on_start(i, bounds, _permanent_stick(*bounds))
+        elif self.mass.damping == 0.0 and abs(speed) >= forcing.table[FASTEST]:
             self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
-        elif undamped and self.mass.frequency == 1.0 and self.limit < 0.25 * math.pi * force:
+        elif forcing.unbounded():
             self.fail(i, UNBOUNDED)
         else:
             return False
@@ -210,9 +208,7 @@ class _Curve(Ledger):
         """Simulate from scene.initial until nothing changes."""
         row = np.full(curve.COLUMNS, np.nan)
         speed = self.sides[i] * self.belt_speeds[i] + 0.0
-        periods = KernelCall(curve.iterate_until_fixed)(
-            self.mass, self.coefficient, speed, self._start(i), row
-        )
+        periods = KernelCall(curve.iterate_until_fixed)(self.forcing, speed, self._start(i), row)
         if periods < 0:
             return False
         # The adjoint of a map that leaves some direction as it was does not exist: only rounding is left to say.
@@ -225,32 +221,35 @@ class _Curve(Ledger):
 
     def _start(self, i: int) -> Floats:
         """Canonical position, slip velocity and time of scene.initial."""
-        initial, side = self.scenes[i].initial, self.sides[i]
+        initial, side, (path, vibration) = self.scenes[i].initial, self.sides[i], self.forcing.belt_at_start()
         assert initial is not None
-        w = side * (initial.velocity - self.belt_speeds[i])
-        return np.array([side * initial.x, w, self._shift(side)])
+        w = side * (initial.velocity - self.belt_speeds[i] - vibration)
+        return np.array([side * (initial.x - path), w, self._shift(side)])
 
     def _shift(self, side: float) -> float:
-        """The canonical time of tau = 0: the drive's phase, half a period on for a belt that moves the other way."""
+        """The canonical time of tau = 0: a sine's phase, half a period on for a belt that moves the other way."""
+        if not self.odd:
+            return 0.0
         force = side * self.mass.force
         return math.atan2(force.imag, force.real) % (2.0 * math.pi) / self.mass.frequency
 
     def _solve(self, places: np.ndarray) -> None:
-        """Each belt speed once: both directions share one solution where the mean is exactly odd."""
+        """Each belt speed once: both directions share one solution where one sine is all."""
         speeds, back = np.unique(self.sides[places] * self.belt_speeds[places] + 0.0, return_inverse=True)
         rows = np.full((len(speeds), curve.COLUMNS), np.nan)
-        _, seconds = KernelCall(curve.continue_in_speed).timed(self.mass, self.coefficient, speeds, rows)
+        _, seconds = KernelCall(curve.continue_in_speed).timed(self.forcing, speeds, rows)
         self.seconds[:] = seconds / len(self.scenes)
         self.rows[places] = rows[back]
 
-    def _use_symmetry(self, places: NDArray[np.int64]) -> None:
-        """On a belt at rest the orbit is its own mirror image half a period later."""
-        self.rows[places[self.belt_speeds[places] == 0.0], curve.MEAN] = 0.0
-
     def _judge(self, places: NDArray[np.int64]) -> None:
         """Say of each of these how it was found, and of those that are not as good as asked, why."""
+        linear = self.rows[places, curve.FOUND] == 1.0
+        if self.mass.damping == 0.0:
+            for i in places[linear].tolist():
+                self.rows[i] = np.nan
+                self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
+            places, linear = places[~linear], linear[~linear]
         rows = self.rows[places]
-        linear = rows[:, curve.FOUND] == 1.0
         for i in places[linear].tolist():
             self.model[i], self.error_kind[i] = str(ModelWord.NO_REVERSAL), "guaranteed"
         closed = rows[:, curve.RESIDUAL] <= 1e3 * rows[:, curve.ROUNDING]
@@ -296,57 +295,13 @@ class _Curve(Ledger):
         """Of the scenes at these places; without panels where there is none."""
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
         speeds, legs = self.belt_speeds[list(places)], np.nan_to_num(rows[:, curve.LEGS])
-        shifts = np.where(self.sides[list(places)] < 0.0, self._shift(-1.0), self._shift(1.0))
-        states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
-        track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
+        sides = self.sides[list(places)]
+        shifts = np.where(sides < 0.0, self._shift(-1.0), self._shift(1.0))
+        states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts, sides])
+        track = KernelCall(make_orbits)(self.forcing, speeds, states, ends)
         filled = slice(ends[-1])  # the rest of a track has never been written
         parts = track.x[filled], track.v[filled], track.friction[filled], track.stick[filled]
         return Orbits(track.tau[filled], *parts, ends)
-
-
-class _VaryingCurve(_Curve):
-    """The same where forces are not one sine: no scene is the mirror image of another."""
-
-    def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
-        super().__init__(scenes, coefficient, tolerance)
-        self.forcing = forcing_of(self.mass, coefficient)
-        self.mass = self.mass._replace(varying=self.forcing)
-        self.sides = np.ones(len(scenes))
-
-    def _may_have_no_single_answer(self) -> NDArray[np.bool_]:
-        return (self.belt_speeds == 0.0) & (not self.forcing.belt_jumps())
-
-    def _has_no_single_answer(self, i: int) -> bool:
-        """Settle the scenes in which the mass stays at rest on a belt of mean velocity zero."""
-        # At rest the force of friction is the load less the position; of the load the mean is zero.
-        low, high = self.forcing.highest - self.limit, self.forcing.lowest + self.limit
-        if low > high:
-            return False
-        bounds = low / self.mass.normal_load, high / self.mass.normal_load
-        self._depends_on_start(i, bounds, _permanent_stick(*bounds))
-        return True
-
-    def _start(self, i: int) -> Floats:
-        initial, (path, vibration) = self.scenes[i].initial, self.forcing.belt_at_start()
-        assert initial is not None
-        return np.array([initial.x - path, initial.velocity - self.belt_speeds[i] - vibration, 0.0])
-
-    def _shift(self, side: float) -> float:
-        return 0.0
-
-    def _use_symmetry(self, places: NDArray[np.int64]) -> None:
-        """Nothing: what returns after a period need not be its own mirror image."""
-
-    def _judge(self, places: NDArray[np.int64]) -> None:
-        """The same, after the scenes whose free oscillation does not decay."""
-        if self.mass.damping > 0.0:
-            super()._judge(places)
-            return
-        free = self.rows[places, curve.FOUND] == 1.0
-        for i in places[free].tolist():
-            self.rows[i] = np.nan
-            self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
-        super()._judge(places[~free])
 
 
 def _permanent_stick(low: float, high: float) -> str:

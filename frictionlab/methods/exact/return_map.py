@@ -12,15 +12,15 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_variation
+from frictionlab.methods.exact.forcing import HIGHEST, LOWEST
 from frictionlab.methods.exact.legs import STICK, cross_corner, slip_leg, starting_mode, stick_leg
 from frictionlab.methods.exact.oscillator import (
+    at_piece,
     impulse_of_limit,
     impulse_of_load,
     largest_swing,
     next_corner,
     response_at,
-    with_belt_speed,
 )
 from frictionlab.values.quantities import EPSILON
 
@@ -174,19 +174,13 @@ def newton_correction(here: Passage, x: float, w: float) -> tuple[float, float]:
     return (d * rx - b * rw) / determinant, (a * rw - c * rx) / determinant
 
 
-def _room_under_one_sine(body: Any, x: float) -> float:
-    return body.friction - body.load - 2.0 * body.damping * body.belt_speed - x
-
-
-def _room_in_pieces(body: Any, x: float) -> float:
+@inner
+def room_to_stick(body: Any, x: float) -> float:
+    """Return how far the belt may still draw the spring before the worst instant of the loads overcomes friction."""
     drawn = 2.0 * body.damping * body.belt_speed + x
     if body.belt_speed > 0.0:
-        return body.friction + body.varying.lowest - drawn
-    return body.friction - body.varying.highest + drawn
-
-
-room_to_stick = by_variation(_room_under_one_sine, _room_in_pieces)
-"""(body, x): how far the belt may still draw the spring before the worst instant of the loads overcomes friction."""
+        return body.friction + body.varying.table[LOWEST] - drawn
+    return body.friction - body.varying.table[HIGHEST] + drawn
 
 
 @inner
@@ -246,24 +240,20 @@ def largest_multiplier(here: Passage) -> float:
     return abs(half) + math.sqrt(square)
 
 
-def _start_of_one_sine(body: Any) -> tuple[float, float]:
-    _, _, u, speed, _ = response_at(body, 0.0, 0.0)
-    return u + body.friction, speed - body.belt_speed
+FAR_ABOVE = 100.0
 
 
-def _start_of_pieces(body: Any) -> tuple[float, float]:
-    # On a belt so fast that slip keeps its sign the map is linear: one step of Newton's method solves it.
-    far = with_belt_speed(body, math.copysign(FAR_ABOVE * (body.size + largest_swing(body)), body.belt_speed))
+@inner
+def friction_free_start(body: Any) -> tuple[float, float]:
+    """Return the steady state at tau = 0 if slip never reverses: the response to the loads and to friction."""
     side = math.copysign(1.0, body.belt_speed)
     _, _, u, speed, _ = response_at(body, 0.0, -side)
+    if body.varying.steady:
+        return u + side * body.friction, speed - body.belt_speed
+    # On a belt so fast that slip keeps its sign the map is linear: one step of Newton's method solves it.
+    far = at_piece(body, 0, side * FAR_ABOVE * (body.size + largest_swing(body)))
     x, w = u + side * body.friction, speed - far.belt_speed
     dx, dw = newton_correction(passage(far, x, w, 0.0, body.period), x, w)
     if abs(dx) + abs(dw) < math.inf:
         x, w = x + dx, w + dw
     return x, w + (far.belt_speed - body.belt_speed)
-
-
-FAR_ABOVE = 100.0
-
-friction_free_start = by_variation(_start_of_one_sine, _start_of_pieces)
-"""(body): the steady state at tau = 0 if slip never reverses: the response to the loads and to friction."""

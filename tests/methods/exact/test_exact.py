@@ -16,9 +16,10 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact import continuation as curve
-from frictionlab.methods.exact.continuation import oscillator_at
+from frictionlab.methods.exact.forcing import forcing_of
 from frictionlab.methods.exact.legs import first_zero
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.exact.oscillator import oscillator_at
 from frictionlab.methods.exact.return_map import Fixed, impulse_error, passage
 from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.scene import Drive, Initial, Scene, Slip, TransverseSlip
@@ -38,9 +39,9 @@ def solve(scenes, tolerance=1e-11, law=LAW):
     return with_columns(Exact(), scenes, law, tolerance)
 
 
-def driven(load, frequency, damping, friction, belt_speed=0.0, **more):
+def driven(load, frequency, damping, friction, belt_speed=0.0, waveform=None, **more):
     """P, Omega, b, f of the textbook; mu = 0.4."""
-    drive = Drive(amplitude=load, frequency=frequency)
+    drive = Drive(amplitude=load, frequency=frequency, waveform=waveform)
     return Scene(
         damping_ratio=damping, normal_load=friction / 0.4, belt_speed=belt_speed, drive=drive, **more
     )
@@ -181,11 +182,11 @@ def test_a_step_never_passes_the_first_zero_and_stays_close_to_it(g, g1, g2, bou
 
 
 @njit
-def one_period_from(mass, coefficient, belt_speed, x, w):
+def one_period_from(forcing, belt_speed, x, w):
     """Mean friction over one period that starts anywhere, and the error that its failure to close gives it."""
-    body = oscillator_at(mass, coefficient, belt_speed)
+    body = oscillator_at(forcing, belt_speed)
     here = passage(body, x, w, 0.0, body.period)
-    unit = mass.normal_load * body.period
+    unit = forcing.normal_load * body.period
     return -here.friction / unit, impulse_error(body, Fixed(x, w, here, 0.0, 1)) / unit
 
 
@@ -193,13 +194,13 @@ def one_period_from(mass, coefficient, belt_speed, x, w):
     "one", [scene(20.0), scene(46.0), driven(2.5, 0.5, 0.1, 4.0, 0.3), driven(2.5, 0.5, 0.1, 4.0, 1.0)]
 )
 def test_the_error_of_a_period_that_does_not_close_covers_its_mean_and_is_not_absurdly_wide(one):
-    rows = np.zeros((1, 9))
-    compiled(curve.continue_in_speed)(one.mass(), 0.4, np.array([one.belt_speed]), rows)
+    rows, forcing = np.zeros((1, 9)), forcing_of(one.mass(), 0.4)
+    compiled(curve.continue_in_speed)(forcing, np.array([one.belt_speed]), rows)
     mean, x, w = rows[0, [curve.MEAN, curve.STATE_X, curve.STATE_W]]
     ratios = []
     for angle in np.arange(0.1, 6.0, 0.5):
         start = x + 1e-6 * math.cos(angle), w + 1e-6 * math.sin(angle)
-        off, error = one_period_from(one.mass(), 0.4, one.belt_speed, *start)
+        off, error = one_period_from(forcing, one.belt_speed, *start)
         ratios.append(abs(off - mean) / error)
     assert max(ratios) <= 1.0
     assert max(ratios) >= 0.03
@@ -249,12 +250,14 @@ def test_undamped_motion_without_reversal_keeps_its_start_but_not_its_mean():
 
 @pytest.mark.parametrize("belt_speed", [0.0, 1.0, 30.0])
 def test_undamped_resonance_is_bounded_exactly_where_friction_reaches_pi_over_4_of_the_load(belt_speed):
-    below = solve(driven(1.0, 1.0, 0.0, 0.25 * math.pi * 0.99, belt_speed))
-    above = solve(driven(1.0, 1.0, 0.0, 0.25 * math.pi * 1.01, belt_speed))
-    assert below.status == ["failed"]
-    assert "without bound" in below.reason[0]
-    assert above.status == ["ok"]
-    assert above.columns["error"][0] <= 1e-10
+    third = {"harmonics": [{"order": 1, "amplitude": 1.0}, {"order": 3, "amplitude": 0.1}]}
+    for shape in ({}, {"waveform": third}):
+        below, above = (driven(1.0, 1.0, 0.0, 0.25 * math.pi * k, belt_speed, **shape) for k in (0.99, 1.01))
+        below, above = solve(below), solve(above)
+        assert below.status == ["failed"]
+        assert "without bound" in below.reason[0]
+        assert above.status == ["ok"]
+        assert above.columns["error"][0] <= 1e-10
 
 
 def test_near_undamped_resonance_no_digits_are_lost():

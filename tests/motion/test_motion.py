@@ -48,7 +48,7 @@ slow = deep("all methods, run by Python")
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(name, marks=slow) for name in ("load", "normal_load", "belt_velocity")],
+    [pytest.param(name, marks=slow) for name in ("load", "normal_load")],
 )
 def test_every_method_answers_as_for_the_changed_scene_where_a_function_is_replaced(name):
     for case, (expected, found) in answers(name).items():

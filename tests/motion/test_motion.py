@@ -21,7 +21,9 @@ import frictionlab
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.interpret import interpreted
-from frictionlab.methods.exact import legs, oscillator
+from frictionlab.methods.exact import legs
+from frictionlab.methods.exact.forcing import forcing_of
+from frictionlab.methods.exact.oscillator import oscillator_at
 from frictionlab.motion import equation as motion
 from frictionlab.motion.equation import START, Instant
 from frictionlab.motion.steppers.step import growth_factor
@@ -221,8 +223,8 @@ def test_deviation_and_reference_together_obey_the_equation_of_motion(mass, tau,
 def test_legs_of_slip_in_closed_form_have_the_acceleration_of_the_equation_of_motion(
     damping, frequency, size, friction, belt_speed, tau, x, w, sign
 ):
-    closed = interpreted(oscillator.canonical)(damping, frequency, size, friction, belt_speed)
     mass = Mass(2.0 * damping, 1.0, 0.0, 1.0, friction, frequency, complex(size), 0j)
+    closed = interpreted(oscillator_at)(forcing_of(mass, 1.0), belt_speed)
     body, after = on_the_line(mass), 0.02
 
     def leg(left):
@@ -246,8 +248,8 @@ def test_legs_of_rest_in_closed_form_are_held_by_the_force_at_rest(
     damping, frequency, size, belt_speed, tau, x
 ):
     friction, after = 99.0, 0.3
-    closed = interpreted(oscillator.canonical)(damping, frequency, size, friction, belt_speed)
-    body = on_the_line(Mass(2.0 * damping, 1.0, 0.0, 1.0, friction, frequency, complex(size), 0j))
+    mass = Mass(2.0 * damping, 1.0, 0.0, 1.0, friction, frequency, complex(size), 0j)
+    closed, body = interpreted(oscillator_at)(forcing_of(mass, 1.0), belt_speed), on_the_line(mass)
     leg = interpreted(legs.stick_leg)(closed, tau, x, after)
 
     held, _rate, _bend = interpreted(motion.holding_force)(body, belt_speed, at(body, tau + after), leg.x)

@@ -162,7 +162,7 @@ def _waves(varying: Varying, b: float, coefficient: float) -> tuple[Floats, floa
     # A belt that swings in undamped resonance pushes the mass through friction alone.
     pushed = (load != 0.0) | (press != 0.0)
     grows = pushed & (np.abs(dynamic) < RESONANT)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         answer, pressed = (np.where(each == 0.0, 0.0, each / dynamic) for each in (load, press))
     fastest = float((frequency * (np.abs(answer - path) + np.abs(pressed))).sum())
     columns = [

@@ -143,6 +143,10 @@ class DrivePeriods:
         """Return the size of a state."""
         return float(np.linalg.norm(state))
 
+    def price(self, state: Floats) -> float:
+        """Return the number of steps that the map of a state takes."""
+        return self.problem.followed_on(self.scene.belt_speed, state, 1, FINE).steps
+
     def mapped(self, states: Floats) -> Floats:
         """Return the images of states [count, size]."""
         return self.problem.mapped(np.full(len(states), self.scene.belt_speed), states)
@@ -235,7 +239,6 @@ class Follower:
         way = self._stretch(state, asked, first, slow)
         while (end := self._end_of(way, first)) is None and self._may_go_on(way, asked):
             leaper.state, before, asked = way.state, leaper.periods, len(way.means)
-            leaper.price = way.steps / asked
             end = self._leapt(leaper)
             if end is not None:
                 break

@@ -56,6 +56,9 @@ class Section(Protocol):
     def size(self, state: Floats) -> float:
         """Return the size of what moves in a state."""
 
+    def price(self, state: Floats) -> float:
+        """Return the number of steps that the map of a state takes; 0 if that does not matter."""
+
     def mapped(self, states: Floats) -> Floats:
         """Return the images of states [count, size]; NaN where there is none."""
 
@@ -68,7 +71,7 @@ class Leaper:
     """Motion that is led on by leaps.
 
     state: state reached so far. periods: maps passed so far. maps: true maps made so far, including those for
-    derivatives. price: steps that a map takes.
+    derivatives. price: steps that a map takes, measured anew where the motion has grown tenfold.
     """
 
     section: Section
@@ -79,7 +82,7 @@ class Leaper:
 
     def __post_init__(self) -> None:
         self._length = 2 * self.fewest
-        self._size = 0.0
+        self._size, self._priced = 0.0, 0.0
 
     def lead(
         self, known: Callable[[], Sequence[KnownOrbit]], close_beside: Callable[[Floats], object]
@@ -119,6 +122,8 @@ class Leaper:
         base = self._mapped(self.state[None])[0] - self.state
         matrix = self._derivative()
         self._size = max(self._size, self.section.size(self.state))  # a motion from rest has none at first
+        if self._size > 10.0 * self._priced:
+            self.price, self._priced = self.section.price(self.state), self._size
         length = self._within_growth(matrix)
         while length >= self.fewest and np.isfinite(matrix).all() and self.maps < self._most:
             power, total = power_sum(matrix, length)

@@ -346,6 +346,10 @@ class Passages:
         """Return the distance of a state to steady sliding."""
         return self.path.from_sliding(state)
 
+    def price(self, state: Floats) -> float:
+        """Return 0: a passage takes steps for one turn at most."""
+        return 0.0
+
     def mapped(self, states: Floats) -> Floats:
         """Return the next passage of each state; NaN where there is none."""
         found = np.full_like(states, math.nan)

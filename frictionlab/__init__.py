@@ -8,6 +8,7 @@ from typing import Any
 __version__: str
 
 _HOMES = {
+    "Answers": "frictionlab.methods.base",
     "Auto": "frictionlab.methods.auto",
     "BeltVibration": "frictionlab.scene.scene",
     "Body": "frictionlab.scene.scene",
@@ -41,14 +42,17 @@ _HOMES = {
     "HarmonicBalance": "frictionlab.methods.reduced.harmonic_balance",
     "Initial": "frictionlab.scene.scene",
     "Jenkins": "frictionlab.laws.jenkins",
+    "Ledger": "frictionlab.methods.base",
     "Length": "frictionlab.laws.compliant",
     "Load": "frictionlab.scene.scene",
     "LuGre": "frictionlab.laws.lugre",
     "March": "frictionlab.methods.march.method",
     "Mdsm": "frictionlab.methods.reduced.mdsm",
     "MemoryLaw": "frictionlab.laws.memory",
+    "Method": "frictionlab.methods.base",
     "NonNegative": "frictionlab.laws.base",
     "NormalLoadVariation": "frictionlab.scene.scene",
+    "Orbit": "frictionlab.motion.orbit.record",
     "PerSpeed": "frictionlab.laws.base",
     "Positive": "frictionlab.laws.base",
     "Receptance": "frictionlab.scene.scene",
@@ -73,6 +77,7 @@ _HOMES = {
     "equivalent": "frictionlab.analysis.fit.equivalent",
     "fit": "frictionlab.analysis.fit.api",
     "impedance": "frictionlab.analysis.response",
+    "is_unique": "frictionlab.theory.rest",
     "needs": "frictionlab.analysis.needs.needs",
     "run": "frictionlab.runner.api",
     "sensitivities": "frictionlab.analysis.sensitivities",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import runpy
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -76,6 +77,18 @@ def test_the_programs_of_the_page_on_solvers_run_and_the_mean_is_proved() -> Non
     assert state.unique == "proved"
     assert means.shape == (5,)
     assert np.isfinite(means).all()
+
+
+def test_the_method_of_the_page_for_authors_answers_as_it_says() -> None:
+    rounded: Any = _names(_block("api.md", "method"))["Rounded"]
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+
+    state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method=rounded())
+
+    assert (state.status, state.mean_friction) == ("ok", 0.0506)
+    assert float(state.reason.partition(" ")[0]) == pytest.approx(state.mean_friction, abs=state.error)
 
 
 def test_the_pages_of_the_python_interface_have_every_public_name() -> None:

@@ -50,19 +50,61 @@ class Multipliers(NamedTuple):
 
 @dataclass(frozen=True)
 class Answers:
-    """What a method found on n scenes that differ in belt speed alone, one entry per scene.
+    """Answers of a method on n scenes that differ in belt speed alone, one entry per scene.
 
-    mean: friction coefficient, NaN without one; x1 + i x2 where friction has two directions. error: bound on that of
-    its x1. period: of the response, in drive periods. mean_low, mean_high, window: where the state is not unique.
-    seconds: kernel time. An array left out is empty for every scene.
-    floquet(): largest modulus of the multipliers of each, found when asked for, as closely as the method needs it;
-    multipliers(): as the table tells it, with its error; left out, floquet() is told. orbit(i): the orbit of scene i,
-    made when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
-    states(i): where a state is not unique, those that its starts reached. ends(i): where the mean may be any in a
-    range, where starts end; the columns in which all of them agree are told.
-    unique: of ok answers PROVED, with the theorem in their model, TESTED, with the starts in their reason, NOT_UNIQUE
-    of a state that only scene.initial chooses, or '' where nothing was asked; left out where nothing ever is.
-    balanced: whether orbits obey the equation of motion but for numerical errors; energies of others have no errors.
+    ``Ledger`` makes them. An array left out is empty for every scene.
+
+    Parameters
+    ----------
+    status : list of {"ok", "refused", "failed", "not_unique", "killed"}
+        End that each scene came to.
+    reason : list of str
+        Reason where there is no mean, or remark on one that there is.
+    model : list of str
+        Words of the column ``model``: what produced the number.
+    error_kind : list of str
+        Kind of the error, "guaranteed", "estimated" or "statistical"; "" without a mean.
+    mean : ndarray
+        Friction coefficient, NaN without one; x1 + i x2 where friction has two directions.
+    error : ndarray
+        Bound on the error of the x1 of the mean.
+    period : ndarray, optional
+        Period of the response, in periods of the drive.
+    floquet : callable, optional
+        Called without arguments: largest modulus of the multipliers of each, as closely as the method needs it.
+    multipliers : callable, optional
+        Called without arguments: the same as the table tells it, with its error; ``floquet`` if left out.
+    mean_low : ndarray, optional
+        Lowest mean where the state is not unique.
+    mean_high : ndarray, optional
+        Highest mean where the state is not unique.
+    window : ndarray, optional
+        Periods over which each of these means is taken.
+    seconds : ndarray, optional
+        Time of kernels [s].
+    unique : sequence of {"proved", "tested", "no", ""}, optional
+        What is known of an answer as the only one: a theorem in the model says so, starts in the reason were
+        tried, only ``scene.initial`` chooses it, or nothing was asked.
+    orbit : callable, optional
+        Called with i: the orbit of scene i, made when asked for; None without one.
+    orbits : callable, optional
+        Called without arguments: all orbits, where a method makes them together at less cost.
+    states : callable, optional
+        Called with i: where a state is not unique, those that its starts reached.
+    ends : callable, optional
+        Called with i: where the mean may be any in a range, where starts end; columns in which all agree are told.
+    balanced : bool, default True
+        True if orbits obey the equation of motion but for numerical errors; energies of others have no errors.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> answers = fl.Exact().solve([scene, scene.with_(belt_speed=50)], fl.Coulomb(mu=0.4), 1e-8)
+    >>> answers.status, answers.error_kind
+    (['ok', 'ok'], ['estimated', 'guaranteed'])
+    >>> answers.mean.round(4).tolist(), answers.orbit(0).tau.shape[1]
+    ([0.0506, 0.4], 10)
     """
 
     status: list[Status]
@@ -89,8 +131,26 @@ class Answers:
 class Ledger:
     """Answers of a curve on their way, one entry for each of n scenes, which has failed until it is entered.
 
-    Numbers that are not known are NaN. low, high, window: as ``mean_low``, ``mean_high`` and ``window`` of
-    ``Answers``.
+    Its lists and arrays have the names of those of ``Answers``, but for ``low`` and ``high``. Numbers that are not
+    known are NaN.
+
+    Parameters
+    ----------
+    count : int
+        Number of scenes.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> ledger = fl.Ledger(3)
+    >>> ledger.accept(0, mean=0.4, error=1e-12, period=1)
+    >>> ledger.leave_open(1, "the mass stays where it starts", low=-0.1, high=0.1, window=1)
+    >>> ledger.fail(2, "no fixed point found")
+    >>> ledger.remark(2, "the load is in resonance")
+    >>> ledger.answers().status
+    ['ok', 'not_unique', 'failed']
+    >>> ledger.answers().reason[2]
+    'no fixed point found; the load is in resonance'
     """
 
     def __init__(self, count: int) -> None:
@@ -102,7 +162,7 @@ class Ledger:
     def accept(
         self, i: int, mean: complex, error: float, period: float = math.nan, kind: str = "estimated"
     ) -> None:
-        """Enter a mean, its error and the period of the response."""
+        """Enter the mean of scene i, its error and the period of the response."""
         self.clear(i)
         self.status[i], self.mean[i], self.error[i] = "ok", mean, error
         self.period[i], self.error_kind[i] = period, kind
@@ -172,26 +232,54 @@ class FoundState(NamedTuple):
 
 
 class Method(Record, ABC):
-    """A way to find steady states; its fields are the parameters a study may set.
+    """Method that finds steady states. Its fields are the parameters that a study may set.
 
-    Its sources are told as those of a law: by name in the docstring, their BibTeX entries in ``bibtex``.
+    Base class of every method. A package brings one to studies by an entry point in the group
+    ``frictionlab.methods``, under its ``name``. The docstring of a method names its sources, as that of a law
+    does.
+
+    Attributes
+    ----------
+    in_words : str
+        Name in figures; its label is used if this is left out.
+    resolves_events : bool
+        True if instants of stick and reversal are solved for: else rest is known to a step or to a model.
+    bibtex : str
+        BibTeX entries of the sources as one string, except those already in frictionlab's bibliography.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> class Sliding(fl.Method):
+    ...     name = "sliding"
+    ...     def refusal(self, scene, law):
+    ...         return None if law.constant_sliding_friction() else "sliding needs Coulomb friction"
+    ...     def solve(self, scenes, law, tolerance):
+    ...         ledger = fl.Ledger(len(scenes))
+    ...         for i, scene in enumerate(scenes):
+    ...             if scene.belt_speed > 50:
+    ...                 ledger.accept(i, law.sliding_friction(1.0), 0.0, period=1, kind="guaranteed")
+    ...             else:
+    ...                 ledger.fail(i, "slip may reverse")
+    ...         return ledger.answers()
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> fl.curve(scene, fl.Coulomb(mu=0.4), [5, 60], method=Sliding())["status"].tolist()
+    ['failed', 'ok']
     """
 
     name: ClassVar[str]
     in_words: ClassVar[str] = ""
-    """What figures call it, its label where left out."""
     resolves_events: ClassVar[bool] = False
-    """Whether instants of stick and reversal are solved for: else rest is known to a step or to a model."""
     bibtex: ClassVar[str] = ""
 
     @abstractmethod
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Why this method cannot do this scene and law, as a sentence; None when it can."""
+        """Return why this method cannot do this scene and law, as a sentence; None if it can."""
 
     def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:
-        """The refusal of each of scenes that differ in belt speed alone.
+        """Return the refusal of each of scenes that differ in belt speed alone.
 
-        Here one after another. A method that knows of them all at once says so sooner.
+        This one asks one after another. A method that knows of them all at once says so sooner.
         """
         return [self.refusal(scene, law) for scene in scenes]
 
@@ -202,14 +290,14 @@ class Method(Record, ABC):
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:
-        """The states that so many starts end in, of scenes that differ in belt speed alone, in ascending order.
+        """Return the states that so many starts end in, of scenes that differ in belt speed alone.
 
         Nothing for a method that follows one motion to one answer.
         """
         return []
 
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
-        """The motion from scene.initial, or from the friction-free one, a record of each period of all that changes.
+        """Return the motion from scene.initial, or from the friction-free one, a record of each common period.
 
         Each ends where the next begins. Nothing for a method that knows no motion but the steady one.
         """

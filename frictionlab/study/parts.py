@@ -259,7 +259,8 @@ def _name(given: Any, what: str, installed: Sequence[str], path: KeyPath, notes:
     if isinstance(given, str) and given in installed:
         return given
     if isinstance(given, str):
-        notes.add(path, *unknown_name(what, given, installed))
+        said, hint = unknown_name(what, given, installed)
+        notes.add(path, f"{said}; install the package that provides it", hint)
     else:
         notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
     return None

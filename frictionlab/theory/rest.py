@@ -198,8 +198,30 @@ def is_unique(scene: Scene, law: FrictionLaw) -> bool:
 
     The theorem holds for every periodic load, motion of the belt and positive normal load. It needs a law
     without memory on a mass with damping above ``largest normal load * steepest fall``. It also needs a mean
-    belt speed other than 0, or loads that make the mass slip all the same. Source: Leine & van de Wouw
-    (2008).
+    belt speed other than 0, or loads that make the mass slip all the same.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene.
+    law : FrictionLaw
+        Law of friction.
+
+    Returns
+    -------
+    bool
+        True if the theorem says so; False leaves it open.
+
+    References
+    ----------
+    Source: Leine & van de Wouw (2008)
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> fl.is_unique(scene, fl.Coulomb(mu=0.4)), fl.is_unique(scene, fl.Dahl(mu=0.4, stiffness=40))
+    (True, False)
     """
     return is_unique_in_slip(scene, law) and not stays_at_rest(scene, law)
 

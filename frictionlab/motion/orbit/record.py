@@ -15,13 +15,30 @@ from frictionlab.values.quantities import Floats
 class Orbit:
     """Period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
 
-    tau [panels, nodes] increases. x, v, friction [panels, nodes] are complex, x1 + i x2. friction is the
-    resisting friction force over the mean normal load, positive if slip is positive; it is NaN in a component
-    that is unknown. stick [panels] marks pieces at rest on the belt; it is None if the method cannot detect
-    rest.
+    Parameters
+    ----------
+    tau : ndarray
+        Time [panels, nodes], which increases.
+    x : ndarray
+        Position [panels, nodes], x1 + i x2.
+    v : ndarray
+        Velocity [panels, nodes], in the same way.
+    friction : ndarray
+        Resisting friction force over the mean normal load [panels, nodes], positive if slip is positive; NaN in a
+        component that is unknown.
+    stick : ndarray or None
+        Marks [panels] of pieces at rest on the belt; None if the method cannot detect rest.
+    periods : int, default 1
+        Number of periods in the record, by which sums and counts over it are divided. It is more than one if
+        steps of a method keep the motion from repeating so soon, or if it never repeats (long mean).
 
-    periods: number of periods in the record, by which sums and counts over the record are divided. It is more
-    than one if steps of a method keep the motion from repeating so soon, or if it never repeats (long mean).
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> orbit = fl.Exact().solve([scene], fl.Coulomb(mu=0.4), 1e-8).orbit(0)
+    >>> isinstance(orbit, fl.Orbit), orbit.tau.shape == orbit.friction.shape
+    (True, True)
     """
 
     tau: Floats

@@ -26,7 +26,7 @@ PROJECT = Path(__file__).parents[1]
 VERSIONS = "3.11", "3.12", "3.13", "3.14"
 OLDEST = "oldest"
 """The environment of the lowest version of each dependency, with the lowest Python."""
-EXTRAS = "certify", "xarray"
+EXTRAS = ("xarray",)
 TESTS = (
     "tests/test_readme.py",
     "tests/report/test_explorer.py",
@@ -172,7 +172,7 @@ def _steps(
     versions = environment.run(environment.python, "-c", SHOWN, *LIBRARIES, within=source).strip()
     if not tests:
         return f"passed, without tests; {versions}"
-    environment.install(f"{built.wheel}[{','.join(EXTRAS)}]", "pytest", *bounds, within=source)
+    environment.install(f"{built.wheel}[{','.join(EXTRAS)}]", "pytest", *of_plugins(), *bounds, within=source)
     # Warnings of old libraries about newer ones are none of ours.
     setting = ["-o", "addopts=", *(["-o", "filterwarnings="] if name == OLDEST else [])]
     said = environment.run(environment.python, "-m", "pytest", "-q", *setting, *tests, within=source)
@@ -216,11 +216,17 @@ def _bounds(folder: Path, name: str) -> list[str]:
 
 
 def lowest() -> list[str]:
-    """The lower bound of each dependency, and of the extras tried, as the only version: "numpy==2.0"."""
+    """The lower bound of each dependency, of extras and plugins too, as the only version: "numpy==2.0"."""
     about = project()
     extras = about["optional-dependencies"]
-    wanted = [*about["dependencies"], *(one for extra in EXTRAS for one in extras[extra])]
+    wanted = [*about["dependencies"], *(one for extra in EXTRAS for one in extras[extra]), *of_plugins()]
     return [one.replace(">=", "==") for one in wanted]
+
+
+def of_plugins() -> list[str]:
+    """Return what the plugins need beside frictionlab: tests load them from the source."""
+    abouts = (tomllib.loads(file.read_text()) for file in PROJECT.glob("plugins/*/pyproject.toml"))
+    return sorted({one for about in abouts for one in about["project"]["dependencies"]} - {"frictionlab"})
 
 
 def project() -> dict[str, Any]:

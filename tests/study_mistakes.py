@@ -99,6 +99,7 @@ EDITS = [
     ("laws:\n  - {kind: coulomb, mu: 0.4}\n  - {kind: coulomb, mu: 0.3, label: soft}", "laws: {kind: coulomb}",
      "13:1: laws: must be a list such as [{kind: coulomb, mu: 0.4}], got a mapping"),
     # methods
+    ("methods: [auto, ", "methods: [{kind: exact, certify: true}, ", "16:25: methods[0].certify: is gone: use method certified, which the package"),
     ("methods: [auto, ", "methods: [autto, ", "16:11: methods[0]: unknown method 'autto'; installed: auto"),
     ("methods: [auto, ", "methods: [auto, auto, ", "16:17: methods[1]: methods[0] has the label 'auto' too"),
     ("methods: [auto, {kind: shooting, label: second}]", "methods: auto", "16:10: methods: must be a list such as [auto]"),

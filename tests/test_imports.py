@@ -77,7 +77,6 @@ OUTSIDE = {
         "llvmlite": "compile",
         "filelock": "compile",
         "pint": "values.units",
-        "flint": "methods.exact.proof",
         "ruamel": "study runner",
         "pandas": "values.units runner charts report analysis cli",
         "xarray": "report",

@@ -21,8 +21,9 @@ def _project(folder: Path) -> dict[str, str]:
     return dict(tomllib.loads((folder / "pyproject.toml").read_text())["project"])
 
 
-def _laws(folder: Path) -> dict[str, str]:
-    return dict(_project(folder)["entry-points"]["frictionlab.laws"])  # type: ignore[index,arg-type]
+def _brought(folder: Path, what: str) -> set[str]:
+    """Names of the laws or methods of a plugin."""
+    return set(_project(folder)["entry-points"].get(f"frictionlab.{what}", {}))  # type: ignore[attr-defined]
 
 
 def test_there_are_plugins() -> None:
@@ -30,16 +31,23 @@ def test_there_are_plugins() -> None:
 
 
 @every_folder
-def test_a_folder_holds_a_law_a_study_that_runs_it_and_is_told_of(folder: Path) -> None:
-    plan = load_study(folder / "study.yaml")
+def test_a_folder_holds_a_law_or_method_a_study_that_runs_it_and_is_told_of(folder: Path) -> None:
+    plan, laws, methods = (
+        load_study(folder / "study.yaml"),
+        _brought(folder, "laws"),
+        _brought(folder, "methods"),
+    )
 
-    assert {law.kind for law in plan.laws} >= set(_laws(folder))
+    assert laws | methods
+    assert {law.kind for law in plan.laws} >= laws
+    assert {method.name for method in plan.methods} >= methods
     assert plan.title
     assert plan.source
     assert plan.expect
     assert all(expectation.because for expectation in plan.expect)
-    assert all(f"kind: {name}" in (folder / "README.md").read_text() for name in _laws(folder))
-    assert f"[{folder.name}](../plugins/{folder.name}/" in (PROJECT / "docs" / "write_a_law.md").read_text()
+    assert all(f"kind: {name}" in (folder / "README.md").read_text() for name in laws | methods)
+    page = PROJECT / "docs" / ("write_a_law.md" if laws else "api.md")
+    assert f"[{folder.name}](../plugins/{folder.name}/" in page.read_text()
 
 
 @deep("making an environment")
@@ -54,15 +62,17 @@ def test_in_a_fresh_environment_a_plugin_is_listed_and_run_and_missed_when_it_is
         return subprocess.run([frictionlab, *arguments], cwd=tmp_path, capture_output=True, text=True)
 
     pip("install", PROJECT, *FOLDERS)
-    listed, schema = said("laws").stdout, said("schema").stdout
+    listed, schema = said("laws").stdout + said("methods").stdout, said("schema").stdout
     for folder in FOLDERS:
         done = said("run", folder / "study.yaml", "-o", folder.name)
         assert done.returncode == 0, done.stderr
-        assert all(name in listed and f'"{name}"' in schema for name in _laws(folder))
+        names = _brought(folder, "laws") | _brought(folder, "methods")
+        assert all(name in listed and f'"{name}"' in schema for name in names)
 
     pip("uninstall", "--yes", *(_project(folder)["name"] for folder in FOLDERS))
     for folder in FOLDERS:
         done = said("run", folder / "study.yaml", "-o", "again")
         assert done.returncode == 2
-        assert all(f"unknown law '{name}'" in done.stderr for name in _laws(folder))
+        assert all(f"unknown law '{name}'" in done.stderr for name in _brought(folder, "laws"))
+        assert all(f"unknown method '{name}'" in done.stderr for name in _brought(folder, "methods"))
         assert "install the package that provides it" in done.stderr

@@ -49,6 +49,7 @@ def test_every_dependency_has_a_lowest_version_to_try() -> None:
 
     assert all(one.count("==") == 1 and ">" not in one for one in lowest)
     assert len(lowest) >= len(release.project()["dependencies"])
+    assert any(one.startswith("python-flint==") for one in lowest)  # of a plugin
 
 
 def test_the_versions_tried_are_those_the_package_names_and_the_next() -> None:

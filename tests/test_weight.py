@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1409,
     "curves": 841,
     "laws": 686,
-    "methods": 9928,
+    "methods": 9181,
     "motion": 4599,
     "report": 1772,
     "runner": 4271,
@@ -22,12 +22,12 @@ LIMITS = {
     "study": 2793,
     "testing": 1491,
     "theory": 831,
-    "values": 1380,
-    "tests": 29099,
-    "plugins": 618,
+    "values": 1383,
+    "tests": 29001,
+    "plugins": 1526,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 342
+MOST_FILES = 336
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

@@ -31,10 +31,6 @@ class ModelWord(StrEnum):
         "closed form: slip never reverses, for the belt is as fast as V_lin or faster",
     )
     ANY_START = "any start", "closed form: the range of the mean over all starts"
-    INTERVALS = (
-        "intervals",
-        "its events enclosed and its mean proved in interval arithmetic (Krawczyk), of the only orbit (theorem T1)",
-    )
     X2_DECAYS = (
         "x2 decays",
         "one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law",

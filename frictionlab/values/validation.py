@@ -241,6 +241,9 @@ class _Told:
         for step in loc[:-1]:
             owner, given = nested(owner, str(step)) or owner, given[str(step)]
         key, fields = str(loc[-1]), owner.model_fields
+        if why := getattr(owner, "gone_keys", {}).get(key):
+            self._notes.on_key((*self._path, *loc), why)
+            return loc
         required = [name for name, field in fields.items() if field.is_required()]
         shorter = {field: key for key, field in getattr(owner, "other_names", {}).items()}
         names = [shorter.get(name, name) for name in fields]

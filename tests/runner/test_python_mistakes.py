@@ -96,8 +96,8 @@ MORE: list[tuple[Callable[[], object], str]] = [
         "HarmonicBalance: tail: must be true or false, got the text 'yes'",
     ),
     (
-        lambda: fl.Exact(certify="yes"),  # type: ignore[arg-type]
-        "Exact: certify: must be true or false, got the text 'yes'",
+        lambda: fl.Exact(certify=True),  # type: ignore[call-arg]
+        "Exact: certify: is gone: use method certified, which the package frictionlab-certified brings",
     ),
     (
         lambda: fl.curve(SCENE, LAW, np.ones((2, 2))),

@@ -27,11 +27,14 @@ SOLVERS = [name for name in registry.method_names() if name != "auto"]  # auto a
 CLASSES: list[Any] = [registry.law_class(name) for name in registry.law_names()]
 CLASSES += [registry.method_class(name) for name in SOLVERS]
 OURS = [kind for kind in dict.fromkeys(CLASSES) if kind.__module__.startswith("frictionlab.")]
-FOLDERS = [
+FOLDERS: list[Any] = [
     law
     for file in sorted(PLUGINS.glob("*/*.py"))
     if not file.name.startswith("test_")
     for law in read_law_file(file).laws.values()
+]
+FOLDERS += [
+    kind for kind in map(registry.method_class, SOLVERS) if not kind.__module__.startswith("frictionlab.")
 ]
 REQUIRED = {
     "article": {"author", "title", "journal", "year"},

@@ -41,7 +41,7 @@ IN_SI: list[dict[str, Any]] = [
 ]
 METHODS = [
     fl.Auto(),
-    fl.Exact(certify=True),
+    fl.Exact(),
     fl.March(stepper="rk4", steps=100),
     fl.HarmonicBalance(harmonics=3, tail=False),
     fl.Mdsm(error="distance"),

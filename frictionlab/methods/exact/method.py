@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, field_validator
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
@@ -36,6 +34,7 @@ NO_DAMPING = (
 UNBOUNDED = (
     "amplitude grows without bound: undamped resonance with friction mu*normal_load below pi/4 of the force"
 )
+NO_CERTIFY = "is gone: use method certified, which the package frictionlab-certified brings"
 
 
 def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
@@ -73,12 +72,6 @@ class Exact(Method):
     found by steps that cannot pass it. The period is closed by Newton's method with derivatives carried
     through the events (saltation); if that fails, by iteration of the period map itself, which never expands.
 
-    Parameters
-    ----------
-    certify : bool, default False
-        Whether to prove every mean in interval arithmetic, which takes some milliseconds per point. It needs
-        python-flint, which ``pip install 'frictionlab[certify]'`` installs.
-
     References
     ----------
     Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
@@ -94,14 +87,7 @@ class Exact(Method):
 
     name: ClassVar[str] = "exact"
     resolves_events: ClassVar[bool] = True
-    certify: bool = Field(default=False, strict=True)
-
-    @field_validator("certify")
-    @classmethod
-    def _has_intervals(cls, certify: bool) -> bool:
-        if certify and importlib.util.find_spec("flint") is None:
-            raise ValueError("needs python-flint: pip install 'frictionlab[certify]', or leave certify out")
-        return certify
+    gone_keys: ClassVar[dict[str, str]] = {"certify": NO_CERTIFY}
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
@@ -120,12 +106,7 @@ class Exact(Method):
         """Answer scenes that differ in belt speed alone."""
         if scenes[0].degrees_of_freedom == 0:
             return solve_prescribed(scenes, law, tolerance)
-        answers = _Curve(scenes, law.sliding_friction(1.0), tolerance).solved()
-        if self.certify:
-            from frictionlab.methods.exact.proof.prove import certified  # python-flint need not be there
-
-            answers = certified(answers, scenes, law)
-        return answers
+        return _Curve(scenes, law.sliding_friction(1.0), tolerance).solved()
 
 
 class _Curve(Ledger):

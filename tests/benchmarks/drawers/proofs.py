@@ -11,12 +11,12 @@ from dataclasses import replace
 import numpy as np
 import random_scenes
 from campaign import WRONG, Campaign, Drawn, Verdicts
+from certified.motion import NotProved
+from certified.prove import prove, starts_of
 from varying_scenes import draw_varying
 
 from frictionlab.methods.base import Answers
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.exact.proof.motion import NotProved
-from frictionlab.methods.exact.proof.prove import prove, starts_of
 from frictionlab.theory.rest import is_unique
 
 KINDS = {

@@ -1,4 +1,4 @@
-"""Whether every leg of an enclosed orbit is what it is taken for: slip of one sign, or stick that friction holds.
+"""Check of every leg of an enclosed orbit: slip of one sign, or stick that friction holds.
 
 From a time at which a function g and its rate g' are known, g >= g0 + g0' h - M h^2/2 where |g''| <= M: as far as
 that is positive no zero can be passed. At its end a leg may come to the zero of g that ends it.
@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from flint import arb, ctx
 
-from frictionlab.methods.exact.proof.forces import SmoothPiece, TimeCourse
-from frictionlab.methods.exact.proof.motion import (
+from certified.forces import SmoothPiece, TimeCourse
+from certified.motion import (
     Mechanics,
     NotProved,
     Values,
@@ -22,7 +22,7 @@ from frictionlab.methods.exact.proof.motion import (
     net_course,
     values_at,
 )
-from frictionlab.methods.exact.proof.system import Event, EventState, OrbitLeg, leg_parts, legs
+from certified.system import Event, EventState, OrbitLeg, leg_parts, legs
 
 MOST_MARCHED = 20_000
 MOST_DESCENTS = 6
@@ -36,7 +36,7 @@ REACH = 0.97
 
 
 class Beyond(NamedTuple):
-    """How far beyond zero a function is that was to be positive.
+    """Distance beyond zero of a function that was to be positive.
 
     bend: its second derivative there, at the start of stick its first. x: position.
     """
@@ -50,7 +50,7 @@ _UNKNOWN = Beyond(0.0, 0.0)
 
 
 class Wrong(NotProved):
-    """A leg is not what it is taken for.
+    """Mistake in a leg, which is not what it is taken for.
 
     leg: its number. after: how long after its start [1/omega_1]. beyond: the function that shows it, where that is
     known. side: of friction's limit, in stick.
@@ -62,15 +62,15 @@ class Wrong(NotProved):
 
 
 class NoReversal(Wrong):
-    """Friction holds the mass where slip is to reverse."""
+    """Mistake of a reversal at which friction holds the mass."""
 
 
 class NoStick(Wrong):
-    """Friction cannot hold the mass where stick is to begin."""
+    """Mistake of a stick in which friction cannot hold the mass."""
 
 
 class Rise(NamedTuple):
-    """A function that must be positive: its value, its rate, a bound on its bend from there on, and the position."""
+    """Function that must be positive: its value, its rate, a bound on its bend from there on, and the position."""
 
     value: Any
     rate: Any
@@ -94,7 +94,7 @@ def check_signs(mechanics: Mechanics, nodes: tuple[Event, ...], states: tuple[Ev
 
 
 def net_force(mechanics: Mechanics, piece: SmoothPiece, state: EventState) -> tuple[Values, Values]:
-    """Of a mass that moves with the belt: what friction has to hold, and friction's limit."""
+    """Return what friction has to hold on a mass that moves with the belt, and friction's limit."""
     load, belt, pressed = (
         values_at(each, piece.start, state.tau) for each in (piece.load, piece.belt, piece.normal_load)
     )
@@ -120,14 +120,14 @@ class SlipSign(NamedTuple):
 
     @classmethod
     def of(cls, mechanics: Mechanics, sign: int, part: tuple[SmoothPiece, Any], x: Any, v: Any) -> SlipSign:
-        """From this position and velocity on."""
+        """Make it from this position and velocity."""
         piece, low = part
         forced = forced_motion(net_course(mechanics, piece, sign), mechanics.b)
         first = values_at(forced, piece.start, low)
         return cls(sign, mechanics.b, forced, piece, low, x - first.value, v - first.rate)
 
     def __call__(self, r: Any) -> Rise:
-        """A time r after the start."""
+        """Return the function a time r after the start."""
         now, belt = (
             values_at(each, self.piece.start, self.low + r) for each in (self.forced, self.piece.belt)
         )
@@ -140,7 +140,7 @@ class SlipSign(NamedTuple):
         )
 
     def free(self, r: Any) -> tuple[Any, ...]:
-        """The free motion and its first four derivatives; the size of two neighbours of them never grows."""
+        """Return the free motion and its first four derivatives; two neighbours of them never grow in size."""
         motion = free_flow(self.b, r)
         found = [
             motion.keep * self.u + motion.turn * self.u1,
@@ -151,13 +151,13 @@ class SlipSign(NamedTuple):
         return tuple(found)
 
     def state(self, r: Any) -> tuple[Any, Any]:
-        """Position and velocity."""
+        """Return position and velocity."""
         now, (y, y1, *_) = values_at(self.forced, self.piece.start, self.low + r), self.free(r)
         return now.value + y, now.rate + y1
 
 
 class Margin(NamedTuple):
-    """How far what friction holds in stick is below its limit on one side, in a part of a leg within a piece."""
+    """Distance of what friction holds in stick to its limit on one side, in a part of a leg within a piece."""
 
     side: int
     mechanics: Mechanics
@@ -166,7 +166,7 @@ class Margin(NamedTuple):
     x: Any
 
     def __call__(self, r: Any) -> Rise:
-        """A time r after the start."""
+        """Return the function a time r after the start."""
         b, belt = self.mechanics.b, self.piece.belt
         held, limit = net_force(
             self.mechanics, self.piece, EventState(self.low + r, self.position(r), arb(0))
@@ -185,7 +185,7 @@ class Margin(NamedTuple):
         )
 
     def position(self, r: Any) -> Any:
-        """The mass goes with the belt."""
+        """Return the position of the mass, which goes with the belt."""
         return self.x + integral(self.piece.belt, self.piece.start, self.low, self.low + r)
 
 
@@ -209,7 +209,7 @@ def _check_slip(mechanics: Mechanics, leg: OrbitLeg, before: int, place: int) ->
 
 
 def _leave(mechanics: Mechanics, leg: OrbitLeg, before: int, slip: SlipSign, place: int, length: Any) -> Any:
-    """How long slip that starts at zero is sure to have its sign; 0 where it is at once driven that way."""
+    """Return how long slip from zero is sure to have its sign; 0 where it is at once driven that way."""
     sign, piece, start = leg.node.sign, slip.piece, slip(arb(0))
     if leg.node.fixed and piece.belt_jumps:
         if not start.value > 0:
@@ -260,12 +260,12 @@ def _length(low: Any, high: Any) -> Any:
 
 
 def hypotenuse(a: Any, b: Any) -> Any:
-    """sqrt(a^2 + b^2), where rounding may leave intervals that reach below zero."""
+    """Return sqrt(a^2 + b^2), where rounding may leave intervals that reach below zero."""
     return (a * a + b * b).nonnegative_part().sqrt()
 
 
 def derivative_bound(course: TimeCourse, order: int) -> Any:
-    """On the derivative of this order of its waves; of its line where that is not zero."""
+    """Return a bound on the derivative of this order of its waves; of its line where that is not zero."""
     total = abs(course.slope) if order == 1 else arb(0)
     for frequency, sine, cosine in course.waves:
         total = total + hypotenuse(sine, cosine) * frequency**order
@@ -273,7 +273,7 @@ def derivative_bound(course: TimeCourse, order: int) -> Any:
 
 
 def _march(function: Any, r: Any, length: Any, ends: bool, place: int, passed: float) -> None:
-    """From a time r on the function stays positive; ``ends``: until it falls to zero at the end."""
+    """Check that from a time r on the function stays positive; ``ends``: until it falls to zero at the end."""
     last = function(length)
     if ends and not last.rate < 0:
         raise NotProved("an event does not cross zero")
@@ -295,7 +295,7 @@ def _march(function: Any, r: Any, length: Any, ends: bool, place: int, passed: f
 
 
 def _below_zero(function: Any, at: Any, length: Any, place: int, passed: float) -> Wrong:
-    """The lowest point near a time where a function is no longer positive."""
+    """Return the lowest point near a time where a function is no longer positive."""
     small = length.mid() * arb(2) ** -40
     for _ in range(MOST_DESCENTS):
         now, bend = function(at), (function(at + small).rate - function(at - small).rate) / (2 * small)
@@ -312,7 +312,7 @@ def _below_zero(function: Any, at: Any, length: Any, place: int, passed: float) 
 
 
 def _reach(now: Rise) -> float:
-    """A time within which it stays positive, to rounding, which REACH covers."""
+    """Return a time within which it stays positive, to rounding, which REACH covers."""
     value, rate, bend = float(now.value.lower()), float(now.rate.lower()), float(now.bound.upper())
     value, bend = max(value, 0.0), max(bend, SMALLEST_BEND)
     root = math.sqrt(rate * rate + 2.0 * bend * value)

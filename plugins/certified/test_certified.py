@@ -3,29 +3,21 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
+import flint
 import numpy as np
 import pytest
+from certified.forces import forces_of
+from certified.method import Certified
+from certified.motion import Mechanics, NotProved, values_at
+from certified.prove import BITS, Unproved, enclosed_mean, prove, starts_of
 from profiles import some
 from random_scenes import draw
 from varying_scenes import draw_varying
 
 import frictionlab as fl
-from frictionlab.methods.exact.method import Exact
-from frictionlab.scene.scene import Scene
-
-flint = pytest.importorskip("flint", reason="python-flint is not installed")
-
-from frictionlab.methods.exact.proof.forces import forces_of  # noqa: E402  # python-flint need not be there
-from frictionlab.methods.exact.proof.motion import Mechanics, NotProved, values_at  # noqa: E402
-from frictionlab.methods.exact.proof.prove import (  # noqa: E402
-    BITS,
-    Unproved,
-    enclosed_mean,
-    prove,
-    starts_of,
-)
 
 RESONANCE = fl.Scene(
     damping_ratio=0.1, normal_load=10, belt_speed=10, drive=fl.Drive(amplitude=10, frequency=1)
@@ -33,12 +25,12 @@ RESONANCE = fl.Scene(
 COULOMB = fl.Coulomb(mu=0.4)
 
 
-def at_speed(scene: Scene, speed: float) -> Scene:
+def at_speed(scene: fl.Scene, speed: float) -> fl.Scene:
     return scene.model_copy(update={"belt_speed": float(speed)})
 
 
-def orbit_of(scene: Scene, law: Any) -> Any:
-    return Exact().solve([scene], law, 1e-8).orbit(0)
+def orbit_of(scene: fl.Scene, law: Any) -> Any:
+    return fl.Exact().solve([scene], law, 1e-8).orbit(0)
 
 
 @pytest.mark.parametrize(
@@ -81,11 +73,11 @@ def test_forces_in_intervals_are_those_of_the_scene() -> None:
                     assert normal == pytest.approx(scene.normal_load + signals.normal_load(at), abs=1e-9)
 
 
-def provable(scene: Scene, law: Any) -> bool:
-    """Whether the exact method answers it with an estimated error, and theorem T1 holds."""
-    if scene.belt_speed == 0.0 or scene.damping_ratio == 0.0 or Exact().refusal(scene, law):
+def provable(scene: fl.Scene, law: Any) -> bool:
+    """Check whether the exact method answers it with an estimated error, and theorem T1 holds."""
+    if scene.belt_speed == 0.0 or scene.damping_ratio == 0.0 or fl.Exact().refusal(scene, law):
         return False
-    answers = Exact().solve([scene], law, 1e-8)
+    answers = fl.Exact().solve([scene], law, 1e-8)
     return answers.status[0] == "ok" and answers.error_kind[0] == "estimated"
 
 
@@ -95,16 +87,16 @@ def test_every_random_scene_is_proved_and_within_the_estimated_error(drawn: Any)
     for _ in range(40):
         scene, law = drawn(rng)
         if provable(scene, law):
-            found = Exact().solve([scene], law, 1e-8)
+            found = fl.Exact().solve([scene], law, 1e-8)
             proved = prove(scene, law.mu, found.orbit(0))
 
             assert abs(proved.mean - found.mean[0]) <= found.error[0] + proved.error
             assert proved.error <= 2e-16 * abs(proved.mean) + 1e-18
 
 
-def leg_signs(scene: Scene) -> tuple[int, ...]:
-    """Of the orbit, from whichever leg makes the tuple least."""
-    answers = Exact().solve([scene], COULOMB, 1e-8)
+def leg_signs(scene: fl.Scene) -> tuple[int, ...]:
+    """Return the signs of the legs of the orbit, from whichever leg makes the tuple least."""
+    answers = fl.Exact().solve([scene], COULOMB, 1e-8)
     if answers.error_kind[0] != "estimated":
         return ()
     signs = [start.sign for start in starts_of(answers.orbit(0), 2.0 * math.pi / scene.frequency)]
@@ -126,14 +118,14 @@ def leg_signs(scene: Scene) -> tuple[int, ...]:
         ),  # legs of slip and stick come and go
     ],
 )
-def test_scenes_an_ulp_from_a_bifurcation_are_proved(scene: Scene, low: float, high: float) -> None:
+def test_scenes_an_ulp_from_a_bifurcation_are_proved(scene: fl.Scene, low: float, high: float) -> None:
     first = leg_signs(at_speed(scene, low))
     while (middle := 0.5 * (low + high)) not in (low, high):
         low, high = (middle, high) if leg_signs(at_speed(scene, middle)) == first else (low, middle)
     for speed in (np.nextafter(low, 0.0), low, high, np.nextafter(high, math.inf)):
         here = at_speed(scene, speed)
         if leg_signs(here):
-            found = Exact().solve([here], COULOMB, 1e-8)
+            found = fl.Exact().solve([here], COULOMB, 1e-8)
             proved = prove(here, COULOMB.mu, found.orbit(0))
 
             assert abs(proved.mean - found.mean[0]) <= found.error[0] + proved.error
@@ -145,7 +137,7 @@ def test_a_wrong_orbit_proves_nothing_wrong() -> None:
     for speed in (5.0, 20.0, 35.0, 46.0, 48.0):
         for other in (0.6 * speed, 0.9 * speed, 1.04 * speed):
             scene = at_speed(RESONANCE, speed)
-            found = Exact().solve([scene], COULOMB, 1e-8)
+            found = fl.Exact().solve([scene], COULOMB, 1e-8)
             try:
                 proved = prove(scene, COULOMB.mu, orbit_of(at_speed(RESONANCE, other), COULOMB))
             except NotProved:
@@ -172,13 +164,38 @@ def test_legs_of_a_wrong_kind_are_refused() -> None:
 def test_a_curve_is_guaranteed_where_it_is_asked_for() -> None:
     speeds = [5.0, 20.0, 46.0, 55.0]
     plain = fl.curve(RESONANCE, COULOMB, speeds, method="exact")
-    table = fl.curve(RESONANCE, COULOMB, speeds, method=Exact(certify=True))
+    table = fl.curve(RESONANCE, COULOMB, speeds, method=Certified())
 
     assert set(table["error_kind"]) == {"guaranteed"}
     assert set(plain["error_kind"]) == {"guaranteed", "estimated"}
     assert (table["error"] <= 1e-15).all()
-    assert "intervals" in table["model"][0]
+    assert all(model.endswith("; proved in intervals") for model in table["model"][:3])
     assert ((table["mean_friction"] - plain["mean_friction"]).abs() <= plain["error"] + table["error"]).all()
+
+
+def test_what_exact_refuses_is_refused_for_the_same_reason() -> None:
+    assert Certified().refusal(RESONANCE, fl.Dahl(mu=0.4, stiffness=4)) == fl.Exact().refusal(
+        RESONANCE, fl.Dahl(mu=0.4, stiffness=4)
+    )
+
+
+def test_under_a_prescribed_slip_errors_stay_those_of_exact() -> None:
+    scene = fl.Scene(slip=fl.Slip(velocity_amplitude=2, frequency=1, waveform="triangle"), belt_speed=1)
+    plain, state = (fl.steady_state(scene, COULOMB, method=each) for each in ("exact", "certified"))
+
+    assert (state.mean_friction, state.error, state.error_kind) == (
+        plain.mean_friction,
+        plain.error,
+        plain.error_kind,
+    )
+    assert state.error_kind == "guaranteed" or "prescribed slip" in state.reason
+
+
+def test_its_study_keeps_its_promises() -> None:
+    done = fl.run(Path(__file__).parent / "study.yaml")
+
+    assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
+    assert set(done.table["status"]) == {"ok"}
 
 
 def test_where_no_theorem_says_so_errors_stay_estimated() -> None:
@@ -186,7 +203,7 @@ def test_where_no_theorem_says_so_errors_stay_estimated() -> None:
     scene = fl.Scene(
         damping_ratio=0, normal_load=10, belt_speed=1, drive=fl.Drive(amplitude=10, frequency=0.5)
     )
-    row = fl.curve(scene, COULOMB, [1.0], method=Exact(certify=True)).iloc[0]
+    row = fl.curve(scene, COULOMB, [1.0], method=Certified()).iloc[0]
 
     assert row["status"] == "ok"
     assert row["error_kind"] == "estimated"

@@ -12,22 +12,22 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from frictionlab.methods.exact.proof.forces import Forces, Sine, SmoothPiece, TimeCourse
+from certified.forces import Forces, Sine, SmoothPiece, TimeCourse
 
 
 class NotProved(Exception):
-    """What a proof failed at."""
+    """Failure of a proof, and at what."""
 
 
 class PieceTime(NamedTuple):
-    """A time, the common periods passed before it, and the piece that holds there."""
+    """Time, the common periods passed before it, and the piece that holds there."""
 
     tau: Any  # since the start of that common period
     piece: int
 
 
 class Values(NamedTuple):
-    """A function of time and its first two derivatives."""
+    """Function of time and its first two derivatives."""
 
     value: Any
     rate: Any
@@ -43,7 +43,7 @@ class FreeFlow(NamedTuple):
 
 
 class Mechanics(NamedTuple):
-    """The scene in intervals: half the damping coefficient, friction coefficient and forces."""
+    """Scene in intervals: half the damping coefficient, friction coefficient and forces."""
 
     b: Any
     mu: Any
@@ -51,7 +51,7 @@ class Mechanics(NamedTuple):
 
 
 def values_at(course: TimeCourse, start: Any, tau: Any) -> Values:
-    """Of a function in its piece."""
+    """Return the values of a function in its piece."""
     value, rate, bend = course.value + course.slope * (tau - start), course.slope, arb(0)
     for frequency, sine, cosine in course.waves:
         s, c = (frequency * tau).sin_cos()
@@ -62,7 +62,7 @@ def values_at(course: TimeCourse, start: Any, tau: Any) -> Values:
 
 
 def integral(course: TimeCourse, start: Any, low: Any, high: Any) -> Any:
-    """Of a function in its piece."""
+    """Return the integral of a function in its piece."""
     length = high - low
     total = length * (course.value + course.slope * ((low - start) + (high - start)) / 2)
     for frequency, sine, cosine in course.waves:
@@ -72,7 +72,7 @@ def integral(course: TimeCourse, start: Any, low: Any, high: Any) -> Any:
 
 
 def double_integral(course: TimeCourse, start: Any, low: Any, high: Any) -> Any:
-    """Integral from low to high of the integral from low to there."""
+    """Return the integral from low to high of the integral from low to there."""
     length = high - low
     total = length * length * ((course.value + course.slope * (low - start)) / 2 + course.slope * length / 6)
     for frequency, sine, cosine in course.waves:
@@ -83,7 +83,7 @@ def double_integral(course: TimeCourse, start: Any, low: Any, high: Any) -> Any:
 
 
 def net_course(mechanics: Mechanics, piece: SmoothPiece, sign: int) -> TimeCourse:
-    """Load less friction in slip of this sign."""
+    """Return the load less friction in slip of this sign."""
     load, pressed = piece.load, piece.normal_load
     if not sign:
         return load
@@ -95,7 +95,7 @@ def net_course(mechanics: Mechanics, piece: SmoothPiece, sign: int) -> TimeCours
 
 
 def forced_motion(course: TimeCourse, b: Any) -> TimeCourse:
-    """A motion that this force drives; its velocity is the course's rate."""
+    """Return a motion that this force drives; its velocity is the course's rate."""
     waves = []
     for frequency, sine, cosine in course.waves:
         stiffness = acb((1 - frequency) * (1 + frequency), 2 * b * frequency)
@@ -105,7 +105,7 @@ def forced_motion(course: TimeCourse, b: Any) -> TimeCourse:
 
 
 def free_flow(b: Any, h: Any) -> FreeFlow:
-    """Over a time h; below, at and above critical damping."""
+    """Return the free motion over a time h; below, at and above critical damping."""
     square = 1 - b * b
     if square > 0:
         rate, e = square.sqrt(), (-b * h).exp()
@@ -124,7 +124,7 @@ def free_flow(b: Any, h: Any) -> FreeFlow:
 def stretches(
     forces: Forces, start: PieceTime, stop: PieceTime, laps: int
 ) -> Iterator[tuple[SmoothPiece, Any, Any]]:
-    """The parts of a leg within pieces: each piece, and when the part begins and ends in it.
+    """Yield the parts of a leg within pieces: each piece, and when the part begins and ends in it.
 
     laps: how often the leg passes the end of the common period.
     """

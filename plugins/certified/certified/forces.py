@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 
 from flint import acb, arb
 
-from frictionlab.scene.scene import Scene
-from frictionlab.scene.waveforms import SINE, Form, as_fraction
+import frictionlab as fl
 
 
 class Sine(NamedTuple):
@@ -57,17 +56,35 @@ class Forces(NamedTuple):
     smooth: bool
 
 
-class _Part(NamedTuple):
-    """One waveform of a scene; rate: its turns in a common period, start: its phase in turns."""
+class _Wave(NamedTuple):
+    """Sine of a waveform: its order, amplitude and phase [degrees]."""
 
-    form: Form
+    order: int
+    amplitude: float
+    phase: float
+
+
+class _Part(NamedTuple):
+    """Waveform of a scene, None for a sine; rate: its turns in a common period, start: its phase in turns."""
+
+    form: Any
     size: Any
     rate: Fraction
     start: Fraction
 
+    @property
+    def waves(self) -> tuple[Any, ...]:
+        """Sines that it is a sum of."""
+        return (_Wave(1, 1.0, 0.0),) if self.form is None else self.form.waves
 
-def forces_of(scene: Scene) -> Forces:
-    """The forces of a driven scene, as its records state them."""
+    @property
+    def lines(self) -> tuple[Any, ...]:
+        """Straight lines between its corners."""
+        return () if self.form is None else self.form.lines
+
+
+def forces_of(scene: fl.Scene) -> Forces:
+    """Return the forces of a driven scene, as its records state them."""
     omega, periods = arb(scene.frequency), scene.periods
     period = 2 * arb.pi() * periods / omega
     drive, belt, normal = scene.drive, scene.belt_vibration, scene.normal_load_variation
@@ -75,13 +92,13 @@ def forces_of(scene: Scene) -> Forces:
     if drive is not None:
         size = arb(drive.amplitude) if drive.unbalance is None else arb(drive.unbalance) * omega * omega
         size = size * _cosine(drive.direction or 0.0)
-        loads.append(_part(drive.waveform or SINE, size, periods, drive.phase))
+        loads.append(_part(drive.waveform, size, periods, drive.phase))
     if belt is not None and belt.velocity_amplitude > 0.0:
-        turns = periods * as_fraction(belt.frequency_ratio or 1.0)
+        turns = round(periods * (belt.frequency_ratio or 1.0))  # ratios p/q, and q divides periods
         size = arb(belt.velocity_amplitude) * _cosine(belt.direction)
         moves.append(_part(belt.waveform, size, turns, belt.phase))
     if normal is not None and normal.amplitude > 0.0:
-        turns = periods * as_fraction(normal.frequency_ratio or 1.0)
+        turns = round(periods * (normal.frequency_ratio or 1.0))
         size = arb(normal.amplitude) * arb(scene.normal_load)
         presses.append(_part(normal.waveform, size, turns, normal.phase))
     corners = sorted({each for part in (*loads, *moves, *presses) for each in _corners(part)})
@@ -105,17 +122,17 @@ def forces_of(scene: Scene) -> Forces:
 
 
 def _closed(corners: list[Fraction]) -> list[Fraction]:
-    """The corners of a period, and the first again."""
+    """Return the corners of a period, and the first again."""
     first = corners[0] if corners else Fraction(0)
     return [*corners, first + 1] if corners else [first, first + 1]
 
 
-def _part(form: Form, size: Any, turns: Fraction | int, phase: float) -> _Part:
+def _part(form: Any, size: Any, turns: int, phase: float) -> _Part:
     return _Part(form, size, Fraction(turns), Fraction(phase) / 360)
 
 
 def _cosine(direction: float) -> Any:
-    """Of an angle in degrees; of right angles without rounding."""
+    """Return the cosine of an angle in degrees, of right angles without rounding."""
     return _turn(Fraction(direction) / 360)[1]
 
 
@@ -131,7 +148,7 @@ def _exact(number: Fraction) -> Any:
 def _corners(part: _Part) -> list[Fraction]:
     """In shares of the common period, from 0 to below 1."""
     every = range(int(part.rate) + 2)
-    found = ((at - part.start % 1 + lap) / part.rate for at, _, _ in part.form.lines for lap in every)
+    found = ((at - part.start % 1 + lap) / part.rate for at, _, _ in part.lines for lap in every)
     return [each for each in found if 0 <= each < 1]
 
 
@@ -151,17 +168,17 @@ def _course(parts: list[_Part], constant: Any, start: Fraction, stop: Fraction, 
 
 
 def _phasors(part: _Part) -> list[tuple[Fraction, Any]]:
-    """The sines of a part: turns in a common period, and P of Im(P exp(i ...))."""
+    """Return the sines of a part: turns in a common period, and P of Im(P exp(i ...))."""
     found = []
-    for term in part.form.waves:
+    for term in part.waves:
         sine, cosine = _turn(Fraction(term.phase) / 360 + term.order * part.start)
         found.append((term.order * part.rate, acb(cosine, sine) * part.size * arb(term.amplitude)))
     return found
 
 
 def _line(part: _Part, start: Fraction, stop: Fraction) -> tuple[Any, Any]:
-    """Of a shape with corners: the value where a piece starts, and the slope per common period."""
-    corners = part.form.lines
+    """Return the value of a shape with corners where a piece starts, and its slope per common period."""
+    corners = part.lines
     if not corners:
         return arb(0), arb(0)
     middle = (part.rate * (start + stop) / 2 + part.start) % 1

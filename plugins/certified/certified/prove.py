@@ -3,46 +3,32 @@
 With damping and under constant friction a scene whose mass must slip has one periodic motion (theory/uniqueness): an
 orbit that is proved to exist has the mean of every motion in the long run.
 
-The nodes of an orbit that was found in floating-point numbers, as a first guess of those to be enclosed.
-
-Another list of legs where the first is not that of the scene.
-
-Next to the onset of a leg rounding may find the orbit with it or without it. What the proof found wrong says which.
-
-Mean friction of an enclosed orbit.
-
-Answers of the exact method with their means proved, where that can be done.
+Nodes of an orbit that was found in floating-point numbers are a first guess of those to be enclosed. Next to the
+onset of a leg rounding may find the orbit with it or without it: what the proof found wrong says which.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, ctx
 
-from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers
-from frictionlab.methods.exact.proof.forces import Forces, forces_of
-from frictionlab.methods.exact.proof.motion import Mechanics, NotProved, double_integral, integral, values_at
-from frictionlab.methods.exact.proof.signs import NoReversal, NoStick, Wrong, check_signs
-from frictionlab.methods.exact.proof.system import Event, EventState, enclose, event_states, leg_parts, legs
-from frictionlab.methods.words import ModelWord
-from frictionlab.motion.orbit.record import Orbit
-from frictionlab.scene.scene import Scene
-from frictionlab.theory.rest import is_unique
+import frictionlab as fl
+from certified.forces import Forces, forces_of
+from certified.motion import Mechanics, NotProved, double_integral, integral, values_at
+from certified.signs import NoReversal, NoStick, Wrong, check_signs
+from certified.system import Event, EventState, enclose, event_states, leg_parts, legs
 
 SHORTEST_LEG = 1e-13
-"""Of a period: legs shorter than this are dropped."""
+"""Share of a period: legs shorter than this are dropped."""
 AT_CORNER = 1e-12
-"""Of a period: how near to a corner an event may be taken for one that the corner makes."""
+"""Share of a period: how near to a corner an event may be taken for one that the corner makes."""
 
 
 class LegStart(NamedTuple):
-    """Where a leg begins: its sign of slip, 0 in stick, time, position and velocity."""
+    """Start of a leg: its sign of slip, 0 in stick, time, position and velocity."""
 
     sign: int
     tau: float
@@ -50,8 +36,8 @@ class LegStart(NamedTuple):
     v: float
 
 
-def starts_of(orbit: Orbit, period: float) -> list[LegStart]:
-    """The starts of the legs of an orbit that begins at time 0, in the order of time."""
+def starts_of(orbit: fl.Orbit, period: float) -> list[LegStart]:
+    """Return the starts of the legs of an orbit that begins at time 0, in the order of time."""
     middle = orbit.tau.shape[1] // 2
     assert orbit.stick is not None
     signs = np.where(orbit.stick, 0, np.sign(orbit.friction[:, middle].real)).astype(int).tolist()
@@ -66,7 +52,7 @@ def starts_of(orbit: Orbit, period: float) -> list[LegStart]:
 
 
 def nodes_of(forces: Forces, starts: list[LegStart]) -> tuple[tuple[Event, ...], list[float]]:
-    """Nodes and guesses of their unknowns. Raises NotProved."""
+    """Return nodes and guesses of their unknowns. Raises NotProved."""
     if (
         len(starts) == 1
     ):  # slip that never reverses: any corner, or any time, will do as the start of its one leg
@@ -93,14 +79,14 @@ def nodes_of(forces: Forces, starts: list[LegStart]) -> tuple[tuple[Event, ...],
 
 
 def _slides(forces: Forces, place: int, one: LegStart) -> bool:
-    """Whether the mass slides just before this corner."""
+    """Check whether the mass slides just before this corner."""
     piece = forces.pieces[place - 1]
     belt: Any = values_at(piece.belt, piece.start, piece.stop).value
     return abs(one.v - float(belt.mid())) > 1e-9 * (abs(one.v) + 1e-300)
 
 
 def repaired(starts: list[LegStart], period: float, problem: NotProved) -> list[LegStart]:
-    """The legs without what is wrong with them, in the order of time. Raises the problem where that is not known."""
+    """Return the legs in the order of time, mended. Raises the problem where it is not known how."""
     if isinstance(problem, NoReversal):
         return _inserted(starts, problem.leg, [starts[problem.leg]._replace(sign=0)])
     if isinstance(problem, NoStick):
@@ -111,12 +97,12 @@ def repaired(starts: list[LegStart], period: float, problem: NotProved) -> list[
 
 
 def _inserted(starts: list[LegStart], place: int, new: list[LegStart]) -> list[LegStart]:
-    """With new legs before that at this place."""
+    """Return the legs with new ones before that at this place."""
     return _joined([*starts[:place], *new, *starts[place:]])
 
 
 def _with_a_reversal(starts: list[LegStart], problem: NoStick) -> list[LegStart]:
-    """Slip where stick was to begin: all the while, or a little where friction comes to hold the mass after all."""
+    """Return the legs with slip where stick was to begin: all the while, or until friction holds the mass."""
     wrong = starts[problem.leg]
     reversed_, rest = wrong._replace(sign=problem.side), starts[problem.leg + 1 :]
     excess, bend, _x = problem.beyond
@@ -127,7 +113,7 @@ def _with_a_reversal(starts: list[LegStart], problem: NoStick) -> list[LegStart]
 
 
 def _with_a_leg(starts: list[LegStart], problem: Wrong) -> list[LegStart]:
-    """A short stick where slip comes to rest, a short slip where stick exceeds the limit."""
+    """Return the legs with a short stick where slip comes to rest, a short slip where stick exceeds the limit."""
     excess, bend, x = problem.beyond
     if not (excess > 0.0 and bend > 0.0):
         raise problem
@@ -151,13 +137,13 @@ def _without_the_shortest(starts: list[LegStart], period: float, problem: NotPro
 
 
 def _joined(starts: list[LegStart]) -> list[LegStart]:
-    """Neighbours of the same sign are one leg."""
+    """Return the legs with neighbours of the same sign as one."""
     kept = [one for i, one in enumerate(starts) if one.sign != starts[i - 1].sign]
     return kept or starts[:1]
 
 
 def mean_force(mechanics: Mechanics, nodes: tuple[Event, ...], states: tuple[EventState, ...]) -> Any:
-    """Mean of the friction force on the mass over a common period [K_1 L]."""
+    """Return the mean of the friction force on the mass over a common period [K_1 L]."""
     impulse = arb(0)
     for leg in legs(nodes, states):
         x = leg.start.x
@@ -179,7 +165,7 @@ def mean_force(mechanics: Mechanics, nodes: tuple[Event, ...], states: tuple[Eve
 
 
 BITS, MORE_BITS = 128, 320
-"""Of numbers; more where a leg is so short that the first leave its sign open."""
+"""Bits of numbers; more where a leg is so short that the first leave its sign open."""
 ATTEMPTS = 8
 
 
@@ -190,8 +176,8 @@ class Proved(NamedTuple):
     error: float
 
 
-def prove(scene: Scene, coefficient: float, orbit: Orbit) -> Proved:
-    """The mean friction of a scene of one orbit, from that orbit as found in floating-point numbers.
+def prove(scene: fl.Scene, coefficient: float, orbit: fl.Orbit) -> Proved:
+    """Return the mean friction of a scene of one orbit, from that orbit as found in floating-point numbers.
 
     Raises NotProved with what cannot be proved of it.
     """
@@ -201,7 +187,7 @@ def prove(scene: Scene, coefficient: float, orbit: Orbit) -> Proved:
         return _proved(scene, coefficient, orbit, MORE_BITS)
 
 
-def _proved(scene: Scene, coefficient: float, orbit: Orbit, bits: int) -> Proved:
+def _proved(scene: fl.Scene, coefficient: float, orbit: fl.Orbit, bits: int) -> Proved:
     with ctx.workprec(bits):
         mechanics = Mechanics(arb(scene.damping_ratio), arb(coefficient), forces_of(scene))
         period = float(mechanics.forces.period.mid())
@@ -216,7 +202,7 @@ def _proved(scene: Scene, coefficient: float, orbit: Orbit, bits: int) -> Proved
 
 
 class Unproved(Exception):
-    """A list of legs, in the order of time, and what is wrong with it."""
+    """List of legs, in the order of time, and what is wrong with it."""
 
     def __init__(self, cause: NotProved, starts: list[LegStart]) -> None:
         super().__init__(str(cause))
@@ -224,7 +210,7 @@ class Unproved(Exception):
 
 
 def enclosed_mean(mechanics: Mechanics, starts: list[LegStart]) -> arb:
-    """Mean friction force [K_1 L] of the orbit with these legs. Raises Unproved."""
+    """Return the mean friction force [K_1 L] of the orbit with these legs. Raises Unproved."""
     nodes, guess = nodes_of(mechanics.forces, starts)
     states = event_states(mechanics, nodes, [arb(each) for each in guess])
     try:
@@ -243,33 +229,3 @@ def _rounded(mean: arb) -> Proved:
     middle = float(mean.mid())
     error = abs(mean - arb(middle)).upper()
     return Proved(middle, math.nextafter(float(error), math.inf))
-
-
-NOT_UNIQUE = "not proved: no theorem says that there is no other orbit"
-
-
-def certified(answers: Answers, scenes: Sequence[Scene], law: FrictionLaw) -> Answers:
-    """The same, its estimated errors replaced by proved ones; where the proof fails the reason says at what."""
-    mean, error = answers.mean.copy(), answers.error.copy()
-    kind, model, reason = list(answers.error_kind), list(answers.model), list(answers.reason)
-    coefficient = law.sliding_friction(1.0)
-    for i, scene in enumerate(scenes):
-        if answers.status[i] != "ok" or kind[i] == "guaranteed":
-            continue
-        orbit = answers.orbit(i)
-        problem = NOT_UNIQUE
-        if orbit is not None and is_unique(scene, law):
-            try:
-                proved = prove(scene, coefficient, orbit)
-            except NotProved as why:
-                problem = f"not proved: {why}"
-            else:
-                mean[i], error[i], kind[i], model[i] = (
-                    proved.mean,
-                    proved.error,
-                    "guaranteed",
-                    f"{model[i]}; {ModelWord.INTERVALS}",
-                )
-                continue
-        reason[i] = "; ".join(part for part in (reason[i], problem) if part)
-    return replace(answers, mean=mean, error=error, error_kind=kind, model=model, reason=reason)

@@ -1,4 +1,4 @@
-"""The equations that the events of a periodic orbit obey, and their solution enclosed by Krawczyk's test.
+"""Equations that the events of a periodic orbit obey, and their solution enclosed by Krawczyk's test.
 
 A node is where one leg ends and the next begins. Unknown are its time and position (its velocity is the belt's), or,
 at a corner of the forces, whose time is known, its position, and its velocity where the mass slides there.
@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from frictionlab.methods.exact.proof.forces import Forces
-from frictionlab.methods.exact.proof.motion import (
+from certified.forces import Forces
+from certified.motion import (
     Mechanics,
     NotProved,
     PieceTime,
@@ -34,7 +34,7 @@ SPARE_BITS = 16
 
 
 class Event(NamedTuple):
-    """Where a leg begins: its sign of slip, 0 in stick, and when.
+    """Start of a leg: its sign of slip, 0 in stick, and when.
 
     piece: that holds from the node on. fixed: whether it is at the piece's start, so that its time is known. slides:
     whether it is reached in slip whose velocity is not zero.
@@ -55,14 +55,14 @@ class EventState(NamedTuple):
 
 
 def widths(nodes: tuple[Event, ...]) -> list[int]:
-    """How many unknowns each node has."""
+    """Return how many unknowns each node has."""
     return [1 + node.slides if node.fixed else 2 for node in nodes]
 
 
 def event_states(
     mechanics: Mechanics, nodes: tuple[Event, ...], unknowns: list[Any]
 ) -> tuple[EventState, ...]:
-    """The state of every node."""
+    """Return the state of every node."""
     found, at = [], 0
     for node in nodes:
         piece = mechanics.forces.pieces[node.piece]
@@ -75,7 +75,7 @@ def event_states(
 
 
 def _before(forces: Forces, node: Event, tau: Any) -> Any:
-    """The belt's velocity just before a node."""
+    """Return the belt's velocity just before a node."""
     if not node.fixed:
         piece = forces.pieces[node.piece]
         return values_at(piece.belt, piece.start, tau).value
@@ -84,7 +84,7 @@ def _before(forces: Forces, node: Event, tau: Any) -> Any:
 
 
 class OrbitLeg(NamedTuple):
-    """From one node to the next, with their places among the unknowns."""
+    """Leg from one node to the next, with their places among the unknowns."""
 
     node: Event
     after: Event
@@ -94,7 +94,7 @@ class OrbitLeg(NamedTuple):
 
 
 def legs(nodes: tuple[Event, ...], states: tuple[EventState, ...]) -> list[OrbitLeg]:
-    """Every leg of a period."""
+    """Return every leg of a period."""
     found = []
     for i, node in enumerate(nodes):
         j = (i + 1) % len(nodes)
@@ -103,7 +103,7 @@ def legs(nodes: tuple[Event, ...], states: tuple[EventState, ...]) -> list[Orbit
 
 
 def last_piece(forces: Forces, leg: OrbitLeg) -> tuple[int, int]:
-    """The piece in which a leg ends and the laps to it: before a corner, not after it."""
+    """Return the piece in which a leg ends and the laps to it: before a corner, not after it."""
     if not leg.after.fixed:
         return leg.after.piece, leg.laps
     if leg.after.piece > 0:
@@ -112,7 +112,7 @@ def last_piece(forces: Forces, leg: OrbitLeg) -> tuple[int, int]:
 
 
 def leg_parts(forces: Forces, leg: OrbitLeg) -> list[Any]:
-    """The leg in its pieces: the piece, and when the leg is in it."""
+    """Return the leg in its pieces: the piece, and when the leg is in it."""
     piece, laps = last_piece(forces, leg)
     stop = leg.stop.tau if not leg.after.fixed else forces.pieces[piece].stop
     start = PieceTime(leg.start.tau, leg.node.piece)
@@ -131,7 +131,7 @@ class Slope(NamedTuple):
 
 
 def slip_equations(mechanics: Mechanics, leg: OrbitLeg) -> Slope:
-    """The flow from the first node ends at the second."""
+    """Return the equations of slip: the flow from the first node ends at the second."""
     x, v, total, begins = leg.start.x, leg.start.v, arb(0), None
     for piece, low, high in leg_parts(mechanics.forces, leg):
         forced = forced_motion(net_course(mechanics, piece, leg.node.sign), mechanics.b)
@@ -155,7 +155,7 @@ def slip_equations(mechanics: Mechanics, leg: OrbitLeg) -> Slope:
 
 
 def stick_equations(mechanics: Mechanics, leg: OrbitLeg) -> Slope:
-    """The mass goes with the belt; where friction lets it go, that is at its limit."""
+    """Return the equations of stick: the mass goes with the belt, until friction is at its limit."""
     carried = leg.start.x
     for piece, low, high in leg_parts(mechanics.forces, leg):
         carried = carried + integral(piece.belt, piece.start, low, high)
@@ -177,7 +177,7 @@ def stick_equations(mechanics: Mechanics, leg: OrbitLeg) -> Slope:
 
 
 def system(mechanics: Mechanics, nodes: tuple[Event, ...], unknowns: list[Any]) -> tuple[arb_mat, arb_mat]:
-    """Residuals [n, 1] and their derivatives [n, n] by the unknowns."""
+    """Return the residuals [n, 1] and their derivatives [n, n] by the unknowns."""
     states = event_states(mechanics, nodes, unknowns)
     count = widths(nodes)
     places = np.concatenate([[0], np.cumsum(count)]).tolist()
@@ -203,7 +203,7 @@ def system(mechanics: Mechanics, nodes: tuple[Event, ...], unknowns: list[Any]) 
 def _by_unknowns(
     mechanics: Mechanics, node: Event, state: EventState, slope: tuple[Any, Any, Any]
 ) -> list[Any]:
-    """Derivatives by the unknowns of a node from those by (tau, x, v)."""
+    """Return the derivatives by the unknowns of a node from those by (tau, x, v)."""
     tau, x, v = slope
     if node.fixed:
         return [x, v] if node.slides else [x]
@@ -212,7 +212,7 @@ def _by_unknowns(
 
 
 def enclose(mechanics: Mechanics, nodes: tuple[Event, ...], guess: list[float]) -> list[Any]:
-    """A box that holds exactly one solution, by Krawczyk's test. Raises NotProved."""
+    """Return a box that holds exactly one solution, by Krawczyk's test. Raises NotProved."""
     middle, least = [arb(each) for each in guess], arb(2) ** (SPARE_BITS - ctx.prec)
     for _ in range(REFINEMENTS):
         residuals, slopes = system(mechanics, nodes, middle)
@@ -243,7 +243,7 @@ def _krawczyk(
     inverse: arb_mat,
     step: list[Any],
 ) -> list[Any]:
-    """The image of a box: where it lies inside, it holds exactly one solution, and so does the image."""
+    """Return the image of a box: where it lies inside, it holds exactly one solution, and so does the image."""
     size = len(middle)
     identity = arb_mat([[int(i == k) for k in range(size)] for i in range(size)])
     reach = arb_mat([[wide - each] for wide, each in zip(box, middle, strict=True)])
@@ -256,7 +256,7 @@ def _column(matrix: arb_mat) -> list[Any]:
 
 
 def _inverse(slopes: arb_mat) -> arb_mat:
-    """Of the midpoint."""
+    """Return the inverse of the midpoint."""
     try:
         return slopes.mid().inv().mid()
     except ZeroDivisionError:

@@ -34,6 +34,7 @@ ARROWS = {
         "theory": "laws scene values",
         "motion": "compile laws scene values",
         "methods": "compile laws motion scene theory values",
+        "tools": "compile motion scene theory",
         "study": "laws methods scene values",
         "curves": "laws methods motion scene theory values",
         "runner": "compile curves laws methods motion scene study theory values",

@@ -12,6 +12,7 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
+from frictionlab import tools
 from frictionlab.runner.summary import summary
 from frictionlab.study.load import load_study
 
@@ -89,6 +90,13 @@ def test_the_method_of_the_page_for_authors_answers_as_it_says() -> None:
 
     assert (state.status, state.mean_friction) == ("ok", 0.0506)
     assert float(state.reason.partition(" ")[0]) == pytest.approx(state.mean_friction, abs=state.error)
+
+
+def test_the_page_for_authors_tells_every_tool() -> None:
+    page = (DOCS / "api.md").read_text().partition("### Kernels and bodies")[2]
+
+    assert sorted(set(tools.__all__) - set(re.findall(r"`(\w+)`", page))) == []
+    assert [name for name in tools.__all__ if getattr(tools, name).__doc__ is None] == []
 
 
 def test_the_pages_of_the_python_interface_have_every_public_name() -> None:

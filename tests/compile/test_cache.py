@@ -33,7 +33,7 @@ FILES = {
     "law_package/__init__.py": "",
     "law_package/inside.py": "SHIFT = 0.25\n",
     "law_helper.py": """
-from frictionlab.compile.decorators import inner
+from frictionlab.tools import inner
 FACTOR = 2.0
 
 @inner
@@ -74,7 +74,7 @@ def of_bristle(law, v):
 kind = by_law(of_sliding, of_bristle)
 """,
     "kernel_of_test.py": """
-from frictionlab.compile.decorators import njit
+from frictionlab.tools import njit
 from pair import body, kind
 
 @njit

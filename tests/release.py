@@ -196,7 +196,7 @@ def _unpacked(folder: Path, built: Built) -> Path:
     """The source but for the package, so that what is imported is what is installed."""
     folder.mkdir(parents=True)
     if built.sdist is None:
-        for name in ("README.md", "pyproject.toml", "conftest.py", "studies", "tests", "docs"):
+        for name in ("README.md", "pyproject.toml", "conftest.py", "plugins", "studies", "tests", "docs"):
             (folder / name).symlink_to(PROJECT / name)
         return folder
     with tarfile.open(built.sdist) as opened:

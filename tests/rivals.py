@@ -8,6 +8,7 @@ a moving mass and its stiffness exactly, beside the numbers that make it a rival
 
 from __future__ import annotations
 
+import sys
 from concurrent.futures import ProcessPoolExecutor
 from itertools import product
 from pathlib import Path
@@ -240,4 +241,7 @@ def draw() -> None:
 
 
 if __name__ == "__main__":
+    sys.path[:0] = [str(Path(__file__).parents[1])]
+    import conftest  # noqa: F401 - lets plugins be seen that are not installed
+
     draw()

@@ -53,13 +53,12 @@ INSIDE_METHODS = {
         "base": "",
         "under_way": "",
         "periodic": "under_way words",
-        "relay_locus": "base words",
         "prescribed": "base periodic under_way words",
         "shooting": "base periodic prescribed under_way words",
         "exact": "base prescribed shooting words",
         "reduced": "base exact prescribed shooting words",
         "march": "base periodic reduced shooting under_way",
-        "auto": "base exact relay_locus shooting words",
+        "auto": "base exact shooting words",
     }.items()
 }
 ROOMS = list(ARROWS)

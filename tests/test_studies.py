@@ -32,7 +32,6 @@ BY_DEFAULT = [
     "fig8a_longitudinal_load",
     "fig8a_transverse_resonance",
     "fig8b_transverse_resonance",
-    "fractional_body",
     "frequency_map",
     "internal_resonance",
     "michaux_waveforms",

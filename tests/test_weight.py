@@ -14,21 +14,21 @@ LIMITS = {
     "compile": 1409,
     "curves": 841,
     "laws": 686,
-    "methods": 9181,
+    "methods": 8037,
     "motion": 4599,
     "report": 1772,
     "runner": 4271,
     "scene": 1706,
-    "study": 2793,
+    "study": 2796,
     "testing": 1491,
     "theory": 831,
     "tools": 19,
     "values": 1383,
-    "tests": 29007,
-    "plugins": 1526,
+    "tests": 28508,
+    "plugins": 3216,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 337
+MOST_FILES = 329
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
+from functools import cache
+from importlib.metadata import entry_points
 from typing import ClassVar
 
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import STATISTICAL, Answers, FoundState, Method
+from frictionlab.methods.base import FOR_MEMORY, STATISTICAL, Answers, FoundState, Method
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.relay_locus.method import RelayLocus
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.words import AUTO, ModelWord
 from frictionlab.motion.orbit.record import Orbit
@@ -20,16 +22,27 @@ from frictionlab.scene.scene import Scene
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
 """From the cheapest method to the most general one."""
-FOR_MEMORY: tuple[Method, ...] = (RelayLocus(),)
-"""For bodies that remember, or are known by a table."""
+NOT_INSTALLED = (
+    "a body that remembers, or is known by a table, is solved by method relay_locus: install the package "
+    "frictionlab-linear-bodies, which brings it, or give a body of springs and dashpots"
+)
+
+
+@cache
+def _for_memory() -> tuple[Method, ...]:
+    """Return the method for bodies that remember; none where it is not installed, or cannot be imported."""
+    for door in entry_points(group="frictionlab.methods", name=FOR_MEMORY):
+        with suppress(ImportError):
+            return (door.load()(),)
+    return ()
 
 
 def _methods_for(scene: Scene) -> tuple[Method, ...]:
-    return FOR_MEMORY if scene.remembers else METHODS_BY_COST
+    return _for_memory() if scene.remembers else METHODS_BY_COST
 
 
 class Auto(Method):
-    """Cheapest method that applies: exact, else shooting; relay_locus for a body with memory.
+    """Cheapest method that applies: exact, else shooting; relay_locus, a plugin, for a body with memory.
 
     One method solves a whole curve, since a change of method inside a curve would look like physics. The
     column ``model`` tells why it was chosen. An answer whose error is above the tolerance counts as failed.
@@ -51,8 +64,10 @@ class Auto(Method):
 
     def choice(self, scene: Scene, law: FrictionLaw) -> tuple[Method | None, str]:
         """The method for this scene and law, and why; None where every method refuses."""
-        against: list[str] = []
-        for method in _methods_for(scene):
+        methods, against = _methods_for(scene), list[str]()
+        if not methods:
+            return None, NOT_INSTALLED
+        for method in methods:
             reason = method.refusal(scene, law)
             if reason is None:
                 why = against[-1].split(";")[0] if against else ModelWord.CHEAPEST.sentence

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.motion.orbit.record import End, Orbit, Orbits
-from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.units import Units, measured
@@ -313,7 +312,8 @@ def about_rest(name: str, scene: Scene) -> str | None:
 
 REMEMBERS = (
     "a body that remembers, or is known by a table, is solved under Coulomb friction alone, along one line: use "
-    "method relay_locus and law coulomb, or a body of springs and dashpots"
+    "method relay_locus, which the package frictionlab-linear-bodies brings, and law coulomb, or a body of springs "
+    "and dashpots"
 )
 
 
@@ -326,28 +326,6 @@ def beyond_linear(name: str, scene: Scene, taken: Sequence[str] = ()) -> str | N
 def beyond_springs(scene: Scene) -> str | None:
     """Why no motion of a scene is followed from instant to instant: its body is more than springs and dashpots."""
     return REMEMBERS if scene.remembers else None
-
-
-def beyond_balance(name: str, scene: Scene) -> str | None:
-    """Why a method of this name that asks a body for its response in frequency cannot do a scene."""
-    if scene.degrees_of_freedom != 1:
-        return (
-            f"{name} takes a body by its response along one line, with a mass: leave transverse and slip out"
-        )
-    if scene.undriven:
-        return (
-            f"{name} needs a drive, whose period is that of the motion: give one, or method shooting and a body of "
-            "springs and dashpots"
-        )
-    body = linear_body(scene)
-    if not body.dissipates:
-        return f"{name} needs a body that dissipates at every frequency: give damping_ratio or memory"
-    if not math.isfinite(body.mass):
-        return (
-            f"friction has frequencies above the last one of the table, {body.known_to:g}: "
-            "give body.receptance.free_mass"
-        )
-    return None
 
 
 SMALLEST, LARGEST = 2.0**-5, 2.0**10
@@ -414,6 +392,8 @@ REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})
 """The names of those that solve a simpler problem, known without loading them."""
 
 
+FOR_MEMORY = "relay_locus"
+"""Name of the method that ``auto`` takes for bodies that remember, or are known by a table: that of a plugin."""
 NO_BOUND = "bounds are gone: the error of a reduced model is its distance to the full answer"
 
 

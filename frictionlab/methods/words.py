@@ -35,10 +35,6 @@ class ModelWord(StrEnum):
         "x2 decays",
         "one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law",
     )
-    LOCUS = (
-        "relay locus",
-        "instants of stick and reversal by Newton's method, the body by all harmonics of its frequency response",
-    )
     SHOOTING_LINE = (
         "shooting 1DOF",
         "shooting: the fixed point of the map of one period, motion along the belt",

@@ -22,7 +22,7 @@ from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.faults import LAW_FILE, BrokenPlugin, from_outside
-from frictionlab.methods.base import Method
+from frictionlab.methods.base import FOR_MEMORY, Method
 from frictionlab.study.entry_points import (
     Home,
     check_class,
@@ -197,8 +197,14 @@ def method_class(name: str) -> type[Method]:
 
 @cache
 def method_code(name: str) -> str:
-    """SHA-256 of the Python files of the package of a method, which is not loaded; '' for one of frictionlab."""
-    return "".join(code_around(door.module) for door in _entry_points(METHODS).get(name, ()))
+    """SHA-256 of the Python files of the package of a method, which is not loaded; '' for one of frictionlab.
+
+    That of ``auto`` is the code of the method from outside that it may take.
+    """
+    names = [name, FOR_MEMORY] if name == "auto" else [name]
+    return "".join(
+        code_around(door.module) for each in names for door in _entry_points(METHODS).get(each, ())
+    )
 
 
 class Laws:

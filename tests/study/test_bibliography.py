@@ -19,23 +19,13 @@ from frictionlab.study.bibliography import (
     unpublished_source,
 )
 from frictionlab.study.records import law_record
-from frictionlab.study.registry import read_law_file
 
-PLUGINS = Path(__file__).parents[2] / "plugins"
 STUDIES = sorted((Path(__file__).parents[2] / "studies").rglob("*.yaml"))
 SOLVERS = [name for name in registry.method_names() if name != "auto"]  # auto answers by another's work
 CLASSES: list[Any] = [registry.law_class(name) for name in registry.law_names()]
 CLASSES += [registry.method_class(name) for name in SOLVERS]
 OURS = [kind for kind in dict.fromkeys(CLASSES) if kind.__module__.startswith("frictionlab.")]
-FOLDERS: list[Any] = [
-    law
-    for file in sorted(PLUGINS.glob("*/*.py"))
-    if not file.name.startswith("test_")
-    for law in read_law_file(file).laws.values()
-]
-FOLDERS += [
-    kind for kind in map(registry.method_class, SOLVERS) if not kind.__module__.startswith("frictionlab.")
-]
+FOLDERS = [kind for kind in dict.fromkeys(CLASSES) if kind not in OURS]
 REQUIRED = {
     "article": {"author", "title", "journal", "year"},
     "book": {"author", "title", "publisher", "year"},

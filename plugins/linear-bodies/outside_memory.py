@@ -202,7 +202,7 @@ def fractional(damping, q, coefficient, case):
 
 
 if __name__ == "__main__":
-    # python tests/outside_memory.py > tests/reference/fractional_bodies.csv
+    # python outside_memory.py > fractional_bodies.csv
     print("q,frequency,load,limit,belt_speed,mean,stick_fraction")
     for q in (0.1, 0.3, 0.5, 0.7, 0.9):
         for case in CASES:

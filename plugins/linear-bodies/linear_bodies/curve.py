@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.decorators import inner, njit
-from frictionlab.methods.relay_locus.locus import (
+from frictionlab.tools import eliminate, inner, njit
+from linear_bodies.locus import (
     MOST_INSTANTS,
     Instants,
     LocusSetting,
@@ -17,9 +17,9 @@ from frictionlab.methods.relay_locus.locus import (
     mean_of_friction,
     mode_before,
 )
-from frictionlab.methods.relay_locus.response import FreeWaves, StepAnswer, side_lag
-from frictionlab.methods.relay_locus.rest_rule import RestRule, RestRules, rule_at
-from frictionlab.methods.relay_locus.search import (
+from linear_bodies.response import EPSILON, FreeWaves, StepAnswer, side_lag
+from linear_bodies.rest_rule import RestRule, RestRules, rule_at
+from linear_bodies.search import (
     FINE,
     NO_ROOT,
     VANISHED,
@@ -34,20 +34,18 @@ from frictionlab.methods.relay_locus.search import (
     verdict_of,
     without_piece,
 )
-from frictionlab.motion.linalg import eliminate
-from frictionlab.values.quantities import EPSILON
 
 IMPULSE, ERROR, COUNT, DEGREE, VERDICT, COLUMNS = range(6)
 FREE_STEPS = 256
-"""In which reversals of the motion without friction are sought."""
+"""Steps in which reversals of the motion without friction are sought."""
 REPAIRS, WAY = 12, 100
-"""Of a motion; steps of belt speed on the way to one."""
+"""Repairs of a motion; steps of belt speed on the way to one."""
 ENOUGH, ENOUGH_ON_THE_WAY = 1e-13, 1e-6
-"""Of the detail of a motion, and of those on the way to one."""
+"""Share ``enough`` of the detail of a motion, and of those on the way to one."""
 
 
 class CurveScales(NamedTuple):
-    """A scale of velocities, the longest part of a rest, the error of the response, how large loads with corners are
+    """Scale of velocities, the longest part of a rest, the error of the response, how large loads with corners are
     beside jumps of friction, and the largest and the least slip without friction."""
 
     scale: float
@@ -59,7 +57,7 @@ class CurveScales(NamedTuple):
 
 
 class Detail(NamedTuple):
-    """Of friction in rests: the place of the rule, the longest part of a rest, and the share of the limit that
+    """Detail of friction in rests: the place of the rule, the longest part of a rest, and the share of the limit that
     friction may be off for a polynomial of too low a degree."""
 
     degree: int
@@ -68,7 +66,7 @@ class Detail(NamedTuple):
 
 
 class FoundMotion(NamedTuple):
-    """A motion that was found: its instants without joints, how they move with the belt speed, and that; what its
+    """Motion that was found: its instants without joints, how they move with the belt speed, and that; what its
     rests ask for."""
 
     times: Any
@@ -79,7 +77,7 @@ class FoundMotion(NamedTuple):
 
 
 class Sought(NamedTuple):
-    """A motion, the detail of its rests, what is wrong with it, what is left at its instants and by how much they
+    """Motion, the detail of its rests, what is wrong with it, what is left at its instants and by how much they
     move for a unit of it."""
 
     setting: LocusSetting
@@ -128,13 +126,13 @@ def follow_curve(
 
 @inner
 def nothing_known(speed: float, given: CurveScales) -> FoundMotion:
-    """No motion, from a belt that no slip overtakes."""
+    """Return no motion, from a belt that no slip overtakes."""
     return FoundMotion(np.empty(0), np.empty(0), np.empty(0), speed, Detail(1, given.longest, ENOUGH))
 
 
 @inner
 def known_from(sought: Sought, rules: RestRules) -> FoundMotion:
-    """What was found."""
+    """Return what was found."""
     motion, n = sought.motion, sought.motion.times.size
     times, modes, slopes, count = np.empty(n), np.empty(n), np.empty(n), 0
     for j in range(n):
@@ -151,7 +149,7 @@ def known_from(sought: Sought, rules: RestRules) -> FoundMotion:
 
 @inner
 def foreseen(setting: LocusSetting, known: FoundMotion, before: FoundMotion) -> Instants:
-    """The instants at another belt speed if they keep their order, from one motion or two."""
+    """Return the instants at another belt speed if they keep their order, from one motion or two."""
     n, period, step = known.times.size, setting.response.period, setting.belt_speed - known.speed
     motion, alike = empty_motion(n, 0), before.times.size == n
     for j in range(n):
@@ -179,8 +177,10 @@ def foreseen(setting: LocusSetting, known: FoundMotion, before: FoundMotion) -> 
 
 @inner
 def approached(setting: LocusSetting, rules: RestRules, known: FoundMotion, given: CurveScales) -> Sought:
-    """The motion at the setting's belt speed by motions on the way from the known one, in steps as long as they can
-    be."""
+    """Return the motion at the setting's belt speed by motions on the way from the known one.
+
+    Steps are as long as they can be.
+    """
     end = setting.belt_speed
     step, before = end - known.speed, known
     sought = Sought(
@@ -209,7 +209,7 @@ def approached(setting: LocusSetting, rules: RestRules, known: FoundMotion, give
 def mended_motion(
     setting: LocusSetting, rules: RestRules, motion: Instants, detail: Detail, given: CurveScales
 ) -> Sought:
-    """The motion from a guess, after changes of its pieces that their own check asks for."""
+    """Return the motion from a guess, after changes of its pieces that their own check asks for."""
     last, period, left, inverse = (
         verdict_of(NO_ROOT, 0),
         setting.response.period,
@@ -250,7 +250,7 @@ def mended_motion(
 
 @inner
 def with_joints(setting: LocusSetting, motion: Instants, longest: float) -> Instants:
-    """The motion with its rests in parts no longer than this, and without corners of the load inside."""
+    """Return the motion with its rests in parts no longer than this, and without corners of the load inside."""
     of, corners, n = setting.response, setting.forcing.corners, motion.times.size
     times, modes, count = np.empty(MOST_INSTANTS), np.empty(MOST_INSTANTS), 0
     for j in range(n):
@@ -276,7 +276,7 @@ def with_joints(setting: LocusSetting, motion: Instants, longest: float) -> Inst
 
 @inner
 def friction_term(rule: RestRule, motion: Instants, j: int, m: int) -> float:
-    """Of the polynomial in the rest that begins at instant j, the coefficient m."""
+    """Return the coefficient m of the polynomial in the rest that begins at instant j."""
     total = 0.0
     for k in range(rule.nodes.size):
         total = total + rule.to_polynomials[m, k] * motion.friction[j, k]
@@ -285,7 +285,7 @@ def friction_term(rule: RestRule, motion: Instants, j: int, m: int) -> float:
 
 @inner
 def misfit_of_rests(setting: LocusSetting, rule: RestRule, motion: Instants) -> float:
-    """The largest of the last two coefficients of the polynomials of friction in rests, and of its jumps at
+    """Return the largest of the last two coefficients of the polynomials of friction in rests, and of its jumps at
     joints."""
     n, worst = rule.nodes.size, 0.0
     for j in range(motion.times.size):
@@ -299,7 +299,7 @@ def misfit_of_rests(setting: LocusSetting, rule: RestRule, motion: Instants) -> 
 
 @inner
 def degree_seen(sought: Sought, rules: RestRules) -> int:
-    """The place of the rule beyond which there is nothing but rounding in any rest."""
+    """Return the place of the rule beyond which there is nothing but rounding in any rest."""
     motion, rule, last = sought.motion, rule_at(rules, sought.detail.degree), 0
     rounding = 0.3 * sought.detail.enough * sought.setting.limit
     for j in range(motion.times.size):
@@ -316,7 +316,7 @@ def degree_seen(sought: Sought, rules: RestRules) -> int:
 
 @inner
 def write_motion(sought: Sought, rule: RestRule, given: CurveScales, row: Any, found: Any) -> None:
-    """The impulse of friction and its error; the motion itself."""
+    """Write the impulse of friction and its error, and the motion itself."""
     setting, motion = sought.setting, sought.motion
     for j in range(motion.times.size):
         found[j, 0], found[j, 1] = motion.times[j], motion.modes[j]
@@ -328,9 +328,11 @@ def write_motion(sought: Sought, rule: RestRule, given: CurveScales, row: Any, f
 
 @inner
 def impulse_bound(sought: Sought, rule: RestRule, given: CurveScales) -> float:
-    """Of friction over a period: from that of the response, of rounding and of Newton's method in what is left at
-    every instant, carried to the instants and times twice the jumps there, from the degree of friction in rests and
-    from what was let pass."""
+    """Return the error of the impulse of a period.
+
+    It is that of the response, of rounding and of Newton's method in what is left at every instant, carried to the
+    instants and times twice the jumps there, from the degree of friction in rests and from what was let pass.
+    """
     setting, motion, period = sought.setting, sought.motion, sought.setting.response.period
     n, jumps = motion.times.size, given.corners
     for j in range(n):

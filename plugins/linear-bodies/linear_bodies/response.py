@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 
-from frictionlab.compile.decorators import embedded, fast_embedded, inner
-from frictionlab.scene.receptance import LinearBody
-from frictionlab.theory.periodic_response import TERMS, periodic_response
-from frictionlab.values.quantities import EPSILON, Floats
+from frictionlab.theory import Floats
+from frictionlab.tools import LinearBody, embedded, fast_embedded, inner, periodic_response
 
 BEND, RATE, VALUE, INTEGRAL, TWICE = range(5)
+EPSILON = 2.0**-52
+"""Distance from one to the next floating-point number."""
 PARTS, POWERS = 4, 12
 """Parts of a panel, and terms of a polynomial in one: there its terms fall four times as fast."""
 
@@ -35,7 +35,7 @@ class StepAnswer(NamedTuple):
 
 
 class FreeWaves(NamedTuple):
-    """The slip velocity without friction on a belt whose mean velocity is zero, and what has corners in it.
+    """Slip velocity without friction on a belt whose mean velocity is zero, and what has corners in it.
 
     waves [n, 3]: frequency, sine and cosine parts. corners [n, 2]: times in [0, period) and by how much the slope of
     the load jumps there; steady: added, so that the mean velocity is zero.
@@ -46,28 +46,29 @@ class FreeWaves(NamedTuple):
     steady: float
 
 
-def _to_powers() -> Floats:
-    """From Chebyshev coefficients of a panel to powers of z in its parts [PARTS, POWERS, TERMS], without rounding:
-    all its numbers are whole over powers of two."""
-    out = np.zeros((PARTS, POWERS, TERMS))
+@lru_cache(maxsize=4)
+def _to_powers(terms: int) -> Floats:
+    """Return the matrices from Chebyshev terms of a panel to powers of z in its parts [PARTS, POWERS, terms].
+
+    There is no rounding: all numbers are whole over powers of two.
+    """
+    out = np.zeros((PARTS, POWERS, terms))
     for part in range(PARTS):
         inside = Polynomial([(2.0 * part + 1.0) / PARTS - 1.0, 1.0 / PARTS])
-        for k in range(TERMS):
+        for k in range(terms):
             powers = Chebyshev.basis(k).convert(kind=Polynomial)(inside).coef[:POWERS]
             out[part, : len(powers), k] = powers
     return out
 
 
-_TO_POWERS = _to_powers()
-
-
 @lru_cache(maxsize=64)
 def response_of(body: LinearBody, frequency: float) -> StepAnswer:
-    """Of forces that repeat with this circular frequency, with V'' and the error of V."""
+    """Return the response to forces that repeat with this circular frequency, with V'' and the error of V."""
     found = periodic_response(body, frequency)
+    to_powers = _to_powers(found.rate.shape[1])
 
     def powers(panels: Floats) -> Floats:
-        return np.ascontiguousarray(np.einsum("ptk,nk->npt", _TO_POWERS, panels).reshape(-1, POWERS))
+        return np.ascontiguousarray(np.einsum("ptk,nk->npt", to_powers, panels).reshape(-1, POWERS))
 
     rate = powers(found.rate)
     slopes = np.arange(POWERS) * rate * (2.0 * PARTS / np.repeat(found.lengths, PARTS))[:, None]
@@ -79,7 +80,7 @@ def response_of(body: LinearBody, frequency: float) -> StepAnswer:
 
 @embedded
 def place(of: StepAnswer, u: float) -> tuple[int, float]:
-    """The row of a time in [0, period] and z there: 0 is just after a jump, the period just before the next."""
+    """Return the row of a time in [0, period] and z there: 0 is just after a jump, the period just before one."""
     share = min(max(u / of.period, 0.0), 1.0) * of.panels
     first = 0
     if of.halvings > 0 and share < 1.0:
@@ -94,7 +95,7 @@ def place(of: StepAnswer, u: float) -> tuple[int, float]:
 
 @fast_embedded
 def in_powers(tables: Any, which: int, row: int, z: float) -> float:
-    """The polynomial of a row of a table, even and odd powers side by side."""
+    """Return the polynomial of a row of a table, even and odd powers side by side."""
     y = z * z
     even, odd = tables[which, row, POWERS - 2], tables[which, row, POWERS - 1]
     for k in range(POWERS - 4, -1, -2):
@@ -104,20 +105,20 @@ def in_powers(tables: Any, which: int, row: int, z: float) -> float:
 
 @embedded
 def wrapped(of: StepAnswer, u: float) -> float:
-    """A time difference in [0, period)."""
+    """Return a time difference in [0, period)."""
     return u if 0.0 <= u < of.period else u - of.period * math.floor(u / of.period)
 
 
 @embedded
 def table_at(of: StepAnswer, which: int, u: float) -> float:
-    """One of its tables a time in [0, period] after an impulse."""
+    """Return one of its tables a time in [0, period] after an impulse."""
     row, z = place(of, u)
     return in_powers(of.tables, which, row, z)
 
 
 @embedded
 def waves_at(waves: Any, t: float) -> tuple[float, float]:
-    """The sum of waves [n, 3] and its rate."""
+    """Return the sum of waves [n, 3] and its rate."""
     value, rate = 0.0, 0.0
     for j in range(waves.shape[0]):
         omega = waves[j, 0]
@@ -129,7 +130,7 @@ def waves_at(waves: Any, t: float) -> tuple[float, float]:
 
 @inner
 def free_slip(of: StepAnswer, forcing: FreeWaves, t: float) -> tuple[float, float]:
-    """The slip velocity without friction on a belt whose mean velocity is zero, and its rate."""
+    """Return the slip velocity without friction on a belt whose mean velocity is zero, and its rate."""
     slip, rate = waves_at(forcing.waves, t)
     slip = slip + forcing.steady
     for c in range(forcing.corners.shape[0]):
@@ -142,7 +143,7 @@ def free_slip(of: StepAnswer, forcing: FreeWaves, t: float) -> tuple[float, floa
 
 @embedded
 def side_lag(of: StepAnswer, since: float, before: bool) -> float:
-    """A time after an instant in [0, period]; at the same instant 0 just after it and the period just before it."""
+    """Return a time after an instant in [0, period]; at the instant 0 just after it and the period just before it."""
     u = wrapped(of, since)
     if u < 1e-13 * of.period or u > of.period * (1.0 - 1e-13):
         return of.period if before else 0.0

@@ -1,4 +1,4 @@
-"""From a guess of the instants of a motion to the motion, checked; where the guess has others, what to change."""
+"""Search from a guess of the instants of a motion to the motion, checked; what to change in a guess with others."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.decorators import inner
-from frictionlab.methods.relay_locus.locus import (
+from frictionlab.tools import inner, solve_linear
+from linear_bodies.locus import (
     MOST_INSTANTS,
     Instants,
     LocusSetting,
@@ -18,20 +18,19 @@ from frictionlab.methods.relay_locus.locus import (
     slip_of_steps,
     steps_of_friction,
 )
-from frictionlab.methods.relay_locus.response import RATE, free_slip, side_lag, table_at
-from frictionlab.methods.relay_locus.rest_rule import RestRule
-from frictionlab.motion.linalg import solve_linear
+from linear_bodies.response import RATE, free_slip, side_lag, table_at
+from linear_bodies.rest_rule import RestRule
 
 MOST_NEWTONS, MOST_CUTS = 16, 5
 """Steps; those one after another that the same piece cuts."""
 EXTREME_HALVINGS = 50
 SLIP_SAMPLES, MOST_DIPS = 16, 6
-"""Of a piece of slip, closer at its ends."""
+"""Samples of a piece of slip, closer at its ends."""
 FINE, NO_ROOT, VANISHED, WRONG = range(4)
 
 
 class Objection(NamedTuple):
-    """What is wrong, the instant where the piece begins in which it is, the shares of it from where to where, and the
+    """Objection: the instant where the piece begins in which it is, the shares of it from where to where, and the
     mode that it should have there; where nothing is, the impulse of what was let pass."""
 
     kind: int
@@ -44,7 +43,7 @@ class Objection(NamedTuple):
 
 @inner
 def empty_motion(count: int, nodes: int) -> Instants:
-    """So many instants, all still to be written, and zero friction at so many nodes of rests."""
+    """Return so many instants, all still to be written, and zero friction at so many nodes of rests."""
     return Instants(np.empty(count), np.empty(count), np.zeros((count, nodes)))
 
 
@@ -98,7 +97,7 @@ def settle_instants(
 
 @inner
 def checked(setting: LocusSetting, rule: RestRule, motion: Instants, scale: float) -> Objection:
-    """Whether slip keeps its sign in every piece of slip, and friction its limit in every rest."""
+    """Check whether slip keeps its sign in every piece of slip, and friction its limit in every rest."""
     of, limit = setting.response, setting.limit
     period, steps = of.period, steps_of_friction(setting, rule, motion)
     mass, passed = 1.0 / (table_at(of, RATE, 0.0) - table_at(of, RATE, period)), 0.0
@@ -133,7 +132,7 @@ def checked(setting: LocusSetting, rule: RestRule, motion: Instants, scale: floa
 
 @inner
 def samples_of_slip(setting: LocusSetting, begun: float, length: float) -> Any:
-    """Shares of a piece of slip: closer at its ends, where slip is small, and at corners of the load."""
+    """Return shares of a piece of slip: closer at its ends, where slip is small, and at corners of the load."""
     of, corners = setting.response, setting.forcing.corners
     count = SLIP_SAMPLES + int(4.0 * length * of.panels / of.period)
     shares, n = np.empty(count + corners.shape[0]), count
@@ -149,8 +148,9 @@ def samples_of_slip(setting: LocusSetting, begun: float, length: float) -> Any:
 
 @inner
 def dip(setting: LocusSetting, steps: Any, piece: Any, sampled: Any, least: float) -> tuple[float, float]:
-    """From where to where slip has the wrong sign about a sample nearer to zero than its neighbours, by parabolas
-    through it; two zeros where it does not.
+    """Return from where to where slip has the wrong sign about a sample nearer to zero than its neighbours.
+
+    Parabolas go through it; two zeros where it does not.
 
     piece: its beginning, its length and its mode. sampled: shares, slips, and which.
     """
@@ -210,13 +210,13 @@ def below(shares: Any, offset: float, sign: float, values: Any, least: float) ->
 
 @inner
 def verdict_of(kind: int, piece: int) -> Objection:
-    """One that asks for no other mode."""
+    """Return one that asks for no other mode."""
     return Objection(kind, piece, 0.0, 1.0, 0.0, 0.0)
 
 
 @inner
 def rewritten(period: float, motion: Instants, what: Objection) -> Instants:
-    """The same with another mode in a share of a piece; where neighbours are alike they become one."""
+    """Return the same with another mode in a share of a piece; where neighbours are alike they become one."""
     n, piece = motion.times.size, what.piece
     length = length_of(motion, period, piece)
     times, modes, count = np.empty(n + 2), np.empty(n + 2), 0
@@ -235,7 +235,7 @@ def rewritten(period: float, motion: Instants, what: Objection) -> Instants:
 
 @inner
 def distinct(times: Any, modes: Any) -> Instants:
-    """The motion of these instants without those at which the mode stays what it was."""
+    """Return the motion of these instants without those at which the mode stays what it was."""
     n, count = times.size, 0
     for j in range(n):
         count += 1 if modes[j] != modes[j - 1 if j > 0 else n - 1] else 0
@@ -249,7 +249,7 @@ def distinct(times: Any, modes: Any) -> Instants:
 
 @inner
 def without_piece(period: float, motion: Instants, piece: int) -> Instants:
-    """The same without what begins at this instant: its neighbours meet; of a rest in parts the end is left there."""
+    """Return the same without what begins at this instant: neighbours meet, of a rest in parts the end stays."""
     n, k = motion.times.size, 0
     times, modes = np.empty(n - 1), np.empty(n - 1)
     part = motion.modes[piece] == 0.0 and mode_before(motion, piece) == 0.0
@@ -265,7 +265,7 @@ def without_piece(period: float, motion: Instants, piece: int) -> Instants:
 
 @inner
 def frictionless(setting: LocusSetting, steps: int, rests: bool) -> Instants:
-    """The reversals of slip without friction; or rests where it overtakes the belt."""
+    """Return the reversals of slip without friction; or rests where it overtakes the belt."""
     times, modes, count = np.empty(MOST_INSTANTS), np.empty(MOST_INSTANTS), 0
     of, v, h = setting.response, setting.belt_speed, setting.response.period / steps
     left, left_rate = free_slip(of, setting.forcing, 0.0)

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from frictionlab.compile.decorators import inner
-from frictionlab.values.quantities import Floats
+from frictionlab.theory import Floats
+from frictionlab.tools import inner
 
 
 class RestRule(NamedTuple):
@@ -57,7 +57,7 @@ class RestRules(NamedTuple):
 
 
 def rest_rules(degrees: tuple[int, ...], terms: int, grading: int) -> RestRules:
-    """Those of these degrees."""
+    """Return the rules of these degrees."""
     rules = [rest_rule(degree, terms, grading) for degree in degrees]
     sizes = [(each.nodes.size, terms, each.places.size, each.samples.size) for each in rules]
     rows = [np.concatenate([array.ravel() for array in each[1:]]) for each in rules]
@@ -69,7 +69,7 @@ def rest_rules(degrees: tuple[int, ...], terms: int, grading: int) -> RestRules:
 
 @inner
 def rule_at(rules: RestRules, k: int) -> RestRule:
-    """One of them."""
+    """Return one of them."""
     row, sizes = rules.numbers[k], rules.sizes[k]
     n, terms, places, samples = sizes[0], sizes[1], sizes[2], sizes[3]
     lags, leads = n + terms, n + 2 * terms
@@ -96,7 +96,7 @@ def rule_at(rules: RestRules, k: int) -> RestRule:
 
 @lru_cache(maxsize=64)
 def rest_rule(degree: int, terms: int, grading: int) -> RestRule:
-    """For friction of this degree, and V' of so many terms."""
+    """Return the rule for friction of this degree, and V' of so many terms."""
     xi, zeta = _points(degree), _points(terms - 1)
     nodes, to = xi**grading, _coefficients(xi)
     n, slopes = degree + 1, _slopes(degree) @ to
@@ -132,19 +132,20 @@ def rest_rule(degree: int, terms: int, grading: int) -> RestRule:
 
 
 def _points(degree: int) -> Floats:
-    """Chebyshev's extreme points of [0, 1]."""
+    """Return Chebyshev's extreme points of [0, 1]."""
     return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.arange(degree + 1) / degree)))
 
 
 def _gauss(count: int) -> tuple[Floats, Floats]:
-    """Gauss's rule on [0, 1]."""
+    """Return Gauss's rule on [0, 1]."""
     x, weight = np.polynomial.legendre.leggauss(count)
     return 0.5 * (1.0 + x), 0.5 * weight
 
 
 def _over(slopes: Floats, grading: int, start: Floats, stop: Floats, count: int) -> tuple[Floats, Floats]:
-    """Places in these spans of the rest [spans, count], and weights of the values of friction there of the integral
-    over dF [spans, count, N + 1].
+    """Return places in these spans of the rest, and weights of friction there of the integral over dF.
+
+    They are [spans, count] and [spans, count, N + 1].
 
     Closer at both ends by eta -> (integral of (eta (1 - eta))^(grading - 1)), so that xi at the beginning of the
     rest, and zeta at the other end, are as smooth as eta."""
@@ -162,15 +163,15 @@ def _over(slopes: Floats, grading: int, start: Floats, stop: Floats, count: int)
 
 
 def _polynomials(x: Floats, degree: int) -> Floats:
-    """Chebyshev's polynomials of [0, 1]."""
+    """Return Chebyshev's polynomials of [0, 1]."""
     return np.asarray(chebyshev.chebvander(2.0 * x - 1.0, degree))
 
 
 def _coefficients(xi: Floats) -> Floats:
-    """From values at xi to coefficients of Chebyshev's polynomials, well conditioned at any degree."""
+    """Return the matrix from values at xi to terms of Chebyshev's polynomials, well conditioned at any degree."""
     return np.asarray(np.linalg.inv(_polynomials(xi, len(xi) - 1)))
 
 
 def _slopes(degree: int) -> Floats:
-    """From coefficients of Chebyshev's polynomials of [0, 1] to those of the derivative."""
+    """Return the matrix from coefficients of Chebyshev's polynomials of [0, 1] to those of the derivative."""
     return np.asarray(chebyshev.chebder(np.eye(degree + 1), axis=0, scl=2.0))

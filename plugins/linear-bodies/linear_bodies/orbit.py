@@ -1,4 +1,4 @@
-"""One period of these motions as smooth panels."""
+"""Orbits: one period of these motions as smooth panels."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.decorators import inner, njit
-from frictionlab.methods.relay_locus.locus import (
+from frictionlab.tools import NODES, Track, grown, inner, njit, track_of
+from linear_bodies.locus import (
     Instants,
     LocusSetting,
     length_of,
@@ -16,7 +16,7 @@ from frictionlab.methods.relay_locus.locus import (
     slip_of_steps,
     steps_of_friction,
 )
-from frictionlab.methods.relay_locus.response import (
+from linear_bodies.response import (
     INTEGRAL,
     TWICE,
     FreeWaves,
@@ -25,14 +25,13 @@ from frictionlab.methods.relay_locus.response import (
     waves_at,
     wrapped,
 )
-from frictionlab.methods.relay_locus.rest_rule import RestRule, RestRules, rule_at
-from frictionlab.methods.relay_locus.search import empty_motion
-from frictionlab.motion.orbit.recorder import NODES, Track, grown, track_of
+from linear_bodies.rest_rule import RestRule, RestRules, rule_at
+from linear_bodies.search import empty_motion
 
 FINEST_PANEL = 1e-4
 """Share of the period of the first panel after an instant, where memory has powers that are no whole numbers."""
 PANELS = 24
-"""In a period at least."""
+"""Panels in a period at least."""
 
 
 class BesideFriction(NamedTuple):
@@ -56,7 +55,7 @@ def make_locus_orbits(
     solved: Any,
     ends: Any,
 ) -> Track:
-    """The panels of every orbit, one after another, that of belt speed i before panel ends[i].
+    """Return the panels of every orbit, one after another, that of belt speed i before panel ends[i].
 
     given: limit of friction, normal load. solved: of each the number of instants, -1 without a motion and 0 where
     slip never reverses, the place of its rule, and what ``follow_curve`` found."""
@@ -80,7 +79,7 @@ def make_locus_orbits(
 
 @inner
 def as_found(setting: LocusSetting, rule: RestRule, found: Any, count: int) -> Instants:
-    """The motion that was written; without instants slip of one sign from tau = 0 on."""
+    """Return the motion that was written; without instants slip of one sign from tau = 0 on."""
     motion = empty_motion(max(count, 1), rule.nodes.size)
     motion.times[0], motion.modes[0] = 0.0, math.copysign(1.0, -setting.belt_speed)
     for j in range(count):
@@ -93,8 +92,10 @@ def as_found(setting: LocusSetting, rule: RestRule, found: Any, count: int) -> I
 
 @inner
 def panel_edges(setting: LocusSetting, motion: Instants, smooth: bool) -> Any:
-    """Of a period from 0: at every instant and corner of the load, and closer after it where the body is not smooth;
-    ascending."""
+    """Return the edges in a period from 0, ascending: at every instant and corner of the load.
+
+    They are closer after it where the body is not smooth.
+    """
     of, corners, n = setting.response, setting.forcing.corners, motion.times.size
     largest = of.period / max(PANELS, of.panels)
     starts = np.empty(n + corners.shape[0])
@@ -133,7 +134,7 @@ def note_locus(
     normal_load: float,
     track: Track,
 ) -> None:
-    """The panels between these edges on a track with room for them."""
+    """Write the panels between these edges on a track with room for them."""
     of = setting.response
     mean = mean_of_friction(setting, rule, motion)
     steps = steps_of_friction(setting, rule, motion)
@@ -164,7 +165,7 @@ def note_locus(
 
 @inner
 def instant_before(setting: LocusSetting, motion: Instants, t: float) -> int:
-    """The instant after which a time lies."""
+    """Return the instant after which a time lies."""
     period, best, least = setting.response.period, 0, math.inf
     for j in range(motion.times.size):
         since = t - motion.times[j]
@@ -176,7 +177,7 @@ def instant_before(setting: LocusSetting, motion: Instants, t: float) -> int:
 
 @inner
 def friction_at(period: float, rule: RestRule, motion: Instants, j: int, since: float) -> float:
-    """Friction a while after instant j, at which a rest begins: Clenshaw's sum in xi."""
+    """Return friction a while after instant j, at which a rest begins: Clenshaw's sum in xi."""
     n = rule.nodes.size
     share = min(max(since / length_of(motion, period, j), 0.0), 1.0)
     x, last, now = 2.0 * share ** (1.0 / rule.grading) - 1.0, 0.0, 0.0
@@ -192,7 +193,7 @@ def friction_at(period: float, rule: RestRule, motion: Instants, j: int, since: 
 
 @inner
 def position_at(setting: LocusSetting, steps: Any, around: BesideFriction, t: float, mean: float) -> float:
-    """x1 at a time in no rest; mean: of friction."""
+    """Return x1 at a time in no rest; mean: of friction."""
     of, corners = setting.response, setting.forcing.corners
     x, _ = waves_at(around.position, t)
     x = x - of.static * mean

@@ -12,24 +12,29 @@ import pytest
 from answered import with_columns
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
+from linear_bodies import curve, search
+from linear_bodies.method import UNSOLVED, RelayLocus
 from profiles import deep
 from strategies import sizes
 
+import frictionlab as fl
 from frictionlab import steady_state
+from frictionlab.compile import cache
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
+from frictionlab.methods import auto
 from frictionlab.methods.auto import Auto
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.march.method import March
-from frictionlab.methods.relay_locus.method import UNSOLVED, RelayLocus
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.motion.orbit.sample import phasors_of_panels
 from frictionlab.scene.receptance import linear_body
 from frictionlab.scene.scene import Body, Drive, Fractional, Initial, Relaxation, Scene, Transverse
+from frictionlab.study import registry
 from frictionlab.theory import friction_free_velocity
 
 LAW = Coulomb(mu=0.4)
-REFERENCE = Path(__file__).parents[2] / "reference" / "fractional_bodies.csv"
+REFERENCE = Path(__file__).parent / "fractional_bodies.csv"
 
 
 def driven(load, frequency, damping, friction, belt_speed=1.0, **more):
@@ -239,7 +244,7 @@ def test_a_relaxing_spring_is_the_motion_with_one_state_more(case):
 
 @deep("seconds of steps")
 def test_a_fractional_body_has_the_mean_of_elements_that_relax_and_of_steps_in_time():
-    """Reference: ``python tests/outside_memory.py``, 86 elements a body; they are good to about 1e-9."""
+    """Reference: ``python outside_memory.py``, 86 elements a body; they are good to about 1e-9."""
     table = np.genfromtxt(REFERENCE, delimiter=",", names=True)
     assert len(table) >= 20
     found = []
@@ -320,6 +325,35 @@ def test_a_belt_at_rest_that_holds_the_body_leaves_its_place_open():
     assert ours.status == ["not_unique"]
     # friction is the load less the spring: it may be off by limit less load either way
     assert (ours.mean_low[0], ours.mean_high[0]) == pytest.approx((-0.5 / 3.75, 0.5 / 3.75))
+
+
+def test_its_study_keeps_its_promises():
+    done = fl.run(Path(__file__).parent / "study.yaml")
+
+    assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
+    assert set(done.table["status"]) == {"ok"}
+
+
+def test_kernels_and_kept_answers_are_named_by_its_code(monkeypatch):
+    before = cache._fingerprint(curve.follow_curve)
+    monkeypatch.setattr(search, "MOST_NEWTONS", search.MOST_NEWTONS + 1)
+
+    assert cache._fingerprint(curve.follow_curve) != before
+    assert registry.method_code("relay_locus") != ""
+    assert registry.method_code("auto") == registry.method_code("relay_locus")
+
+
+def test_without_it_auto_says_what_to_install(monkeypatch):
+    scene = driven(10.0, 1.0, 0.1, 4.0, body=relaxing(0.5, 2.0))
+    monkeypatch.setattr(auto, "_for_memory", lambda: ())
+
+    state = steady_state(scene, LAW)
+
+    assert state.status == "refused"
+    assert "frictionlab-linear-bodies" in state.reason
+    assert "relay_locus" in state.reason
+    assert friction_free_velocity(scene) > 0.0
+    assert steady_state(scene.with_(body=None), LAW).status == "ok"
 
 
 def test_auto_takes_it_where_a_body_remembers_and_tells_what_it_cannot_do():

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.decorators import embedded, fast, inner
-from frictionlab.methods.relay_locus.response import (
+from frictionlab.tools import eliminate, embedded, fast, inner
+from linear_bodies.response import (
     BEND,
     RATE,
     VALUE,
@@ -34,14 +34,13 @@ from frictionlab.methods.relay_locus.response import (
     table_at,
     wrapped,
 )
-from frictionlab.methods.relay_locus.rest_rule import RestRule
-from frictionlab.motion.linalg import eliminate
+from linear_bodies.rest_rule import RestRule
 
 MOST_INSTANTS = 96
 
 
 class LocusSetting(NamedTuple):
-    """The body, what moves it, the limit of friction and the belt's mean velocity."""
+    """Body, what moves it, the limit of friction and the belt's mean velocity."""
 
     response: StepAnswer
     forcing: FreeWaves
@@ -50,7 +49,7 @@ class LocusSetting(NamedTuple):
 
 
 class Instants(NamedTuple):
-    """A motion of one period: at times[j] the mode of motion becomes modes[j], 1.0 and -1.0 of slip, 0.0 of rest.
+    """Motion of one period: at times[j] the mode of motion becomes modes[j], 1.0 and -1.0 of slip, 0.0 of rest.
     Long rests have joints, at which rest follows rest, and so have those in which the load has a corner.
 
     friction [instants, N + 1]: its values at the nodes of the rest that begins at instant j.
@@ -63,26 +62,26 @@ class Instants(NamedTuple):
 
 @embedded
 def mode_before(motion: Instants, j: int) -> float:
-    """The mode that ends at instant j."""
+    """Return the mode that ends at instant j."""
     return motion.modes[j - 1] if j > 0 else motion.modes[motion.modes.size - 1]
 
 
 @embedded
 def length_of(motion: Instants, period: float, j: int) -> float:
-    """Of the piece that begins at instant j."""
+    """Return the length of the piece that begins at instant j."""
     n = motion.times.size
     return motion.times[j + 1] - motion.times[j] if j < n - 1 else motion.times[0] + period - motion.times[j]
 
 
 @embedded
 def known_jump(motion: Instants, limit: float, j: int) -> float:
-    """Of friction at instant j, the part of slip alone."""
+    """Return the jump of friction at instant j, the part of slip alone."""
     return limit * (motion.modes[j] - mode_before(motion, j))
 
 
 @embedded
 def jump(motion: Instants, limit: float, j: int) -> float:
-    """Of friction at instant j."""
+    """Return the jump of friction at instant j."""
     n, last = motion.times.size, motion.friction.shape[1] - 1
     total = known_jump(motion, limit, j)
     if motion.modes[j] == 0.0:
@@ -94,7 +93,7 @@ def jump(motion: Instants, limit: float, j: int) -> float:
 
 @inner
 def steps_of_friction(setting: LocusSetting, rule: RestRule, motion: Instants) -> Any:
-    """Friction as steps [n, 2], when and how large: at the instants, and for every rest at the places of the rule."""
+    """Return friction as steps [n, 2], when and how large: at instants, and in rests at the places of the rule."""
     period, g = setting.response.period, rule.places.size
     out, n = np.empty((motion.times.size * (1 + g), 2)), 0
     for j in range(motion.times.size):
@@ -113,7 +112,7 @@ def steps_of_friction(setting: LocusSetting, rule: RestRule, motion: Instants) -
 
 @inner
 def slip_of_steps(setting: LocusSetting, steps: Any, t: float) -> float:
-    """Slip velocity at a time t in no rest."""
+    """Return the slip velocity at a time t in no rest."""
     of = setting.response
     w, _ = free_slip(of, setting.forcing, t)
     w = w - setting.belt_speed
@@ -124,7 +123,7 @@ def slip_of_steps(setting: LocusSetting, steps: Any, t: float) -> float:
 
 @inner
 def mean_of_friction(setting: LocusSetting, rule: RestRule, motion: Instants) -> float:
-    """Over the period."""
+    """Return the mean of friction over the period."""
     total = 0.0
     for j in range(motion.times.size):
         mean = setting.limit * motion.modes[j]
@@ -139,8 +138,10 @@ def mean_of_friction(setting: LocusSetting, rule: RestRule, motion: Instants) ->
 def rest_rows(
     setting: LocusSetting, rule: RestRule, motion: Instants, rests: Any, matrix: Any, right: Any
 ) -> None:
-    """The linear system of friction at the nodes of all rests, and on its right the motion without it [:, 0] and what
-    an impulse J d does that instant j takes, per d [:, 1 + j]."""
+    """Write the linear system of friction at the nodes of all rests.
+
+    On its right stand the motion without it [:, 0] and what an impulse J d at instant j does, per d [:, 1 + j].
+    """
     of, n = setting.response, rule.nodes.size
     for p in range(rests.size):
         a, length = motion.times[rests[p]], length_of(motion, of.period, rests[p])
@@ -161,7 +162,7 @@ def rest_rows(
 
 @inner
 def rows_of_own_rest(of: StepAnswer, rule: RestRule, length: float, matrix: Any, first: int) -> None:
-    """Weights in w' at the nodes of a rest of this length of its own friction there."""
+    """Write weights in w' at the nodes of a rest of this length of its own friction there."""
     n = rule.nodes.size
     square = np.zeros(n * n)
     for m in range(rule.lags.size):
@@ -181,7 +182,7 @@ def rows_of_own_rest(of: StepAnswer, rule: RestRule, length: float, matrix: Any,
 
 @fast
 def add_products(total: Any, first: Any, second: Any) -> None:
-    """Two numbers times an array each, to a third one."""
+    """Add two numbers times an array each to a third array."""
     (a, x), (b, y) = first, second
     for q in range(total.size):
         total[q] += a * x[q] + b * y[q]
@@ -189,8 +190,7 @@ def add_products(total: Any, first: Any, second: Any) -> None:
 
 @inner
 def row_of_rest(of: StepAnswer, rule: RestRule, rest: Any, which: int, when: Any, row: Any) -> None:
-    """Weights in w or w', as the table is that of V or V', at a time in no part of it of friction at the nodes of a
-    rest.
+    """Write weights in w or w', as the table is that of V or V', of friction at the nodes of a rest, at another time.
 
     rest: its beginning and its length. when: the time, and whether it is that before a jump there.
     """
@@ -207,8 +207,10 @@ def row_of_rest(of: StepAnswer, rule: RestRule, rest: Any, which: int, when: Any
 
 @inner
 def newton_system(setting: LocusSetting, rule: RestRule, motion: Instants, matrix: Any, residual: Any) -> int:
-    """Friction in all rests, for these instants; what is left at every instant, and its derivatives by them. How many
-    rests there are."""
+    """Write friction in all rests, for these instants; what is left at every instant, and its derivatives by them.
+
+    Return how many rests there are.
+    """
     of, n, count = setting.response, rule.nodes.size, motion.times.size
     resting = 0
     for j in range(count):
@@ -261,7 +263,7 @@ def newton_system(setting: LocusSetting, rule: RestRule, motion: Instants, matri
 def newton_row(
     setting: LocusSetting, motion: Instants, i: int, of_rests: Any, matrix: Any, residual: Any
 ) -> None:
-    """Slip velocity at instant i, at which slip ends, and its derivatives.
+    """Write the slip velocity at instant i, at which slip ends, and its derivatives.
 
     of_rests: friction in them [nodes, 0] and what moved instants do to it, and weights of friction at their nodes in
     the slip velocity there and in its rate just before."""

@@ -52,7 +52,7 @@ INSIDE_METHODS = {
         "words": "",
         "base": "",
         "under_way": "",
-        "periodic": "under_way words",
+        "periodic": "words",
         "prescribed": "base periodic under_way words",
         "shooting": "base periodic prescribed under_way words",
         "exact": "base prescribed shooting words",

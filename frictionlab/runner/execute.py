@@ -161,7 +161,7 @@ def _seconds(chunk: Chunk) -> float:
 def solve_timed(chunk: Chunk) -> Solved:
     """Answer every point of a chunk on this thread. Raises BrokenPlugin."""
     begun = time.perf_counter()
-    now = under_way[id(chunk)] = UnderWay(begun - seconds_compiling(), begun, calls=chunk.calls)
+    now = under_way[id(chunk)] = UnderWay(begun - seconds_compiling(), begun)
     try:
         with told_to(now):
             parts = solve(chunk)

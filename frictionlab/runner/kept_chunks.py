@@ -26,7 +26,7 @@ import frictionlab
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.faults import INTERNAL, MARK, from_outside
 from frictionlab.methods.base import Method
-from frictionlab.runner.chunks import Chunk, KeptCalls
+from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.files import remove_leftovers, write_whole
 from frictionlab.runner.part import KeptRows, Part
 from frictionlab.study import registry
@@ -146,11 +146,6 @@ class KeptChunks:
         write_whole(path, _packed(part))
         return True
 
-    def calls(self, key: str) -> KeptCalls:
-        """Where those of the chunk of a key are kept, as long as it is under way."""
-        self._make(self.folder)
-        return KeptCalls(self._path(key).with_suffix(".calls"))
-
     def _make(self, folder: Path) -> None:
         if folder not in self._made:
             with suppress(OSError):  # what cannot be written then says so, or is not kept
@@ -160,10 +155,10 @@ class KeptChunks:
     def trim(self) -> None:
         """Remove those used longest ago until the rest is small enough; none that this run has used."""
         files = []
-        for folder in [*self.folder.glob("??"), *self.folder.glob("??/*.calls")]:
+        for folder in self.folder.glob("??"):
             with suppress(OSError):
                 remove_leftovers(folder)
-        for path in [*self.folder.glob("??/*.chunk"), *self.folder.glob("??/*.calls/*")]:
+        for path in self.folder.glob("??/*.chunk"):
             with suppress(OSError):  # another process removed it
                 there = path.stat()
                 files.append((there.st_mtime, there.st_size, path))
@@ -173,8 +168,6 @@ class KeptChunks:
                 return
             with suppress(OSError):
                 path.unlink()
-                if path.suffix == ".call":
-                    path.parent.rmdir()  # once it is empty
             size -= bytes_
 
     def _path(self, key: str) -> Path:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.runner.chunks import Chunk, Task, chunk_size, cuts
+from frictionlab.runner.chunks import Chunk, Task, cuts, is_long
 from frictionlab.runner.kept_chunks import Keys
 from frictionlab.runner.part import Part, Places, one_part
 from frictionlab.study.grid import StudyCurve
@@ -57,7 +57,7 @@ def open_chunks(
     Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
     of one that went through.
     """
-    for number, cut in enumerate(cuts(curves, chunk_size(curves))):
+    for number, cut in enumerate(cuts(curves, is_long(curves))):
         places = np.arange(len(cut.rows))
         left = places if finished is None else np.flatnonzero(~finished[cut.rows])
         if len(left):

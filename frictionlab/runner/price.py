@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.laws.faults import BrokenPlugin
-from frictionlab.runner.chunks import Chunk, Cut, Task, chunk_size, cuts
+from frictionlab.runner.chunks import Chunk, Cut, Task, cuts, is_long
 from frictionlab.runner.execute import OverLimit, solve_timed, under_way, within
 from frictionlab.runner.open_chunks import OpenChunk
 from frictionlab.runner.progress import Progress, silent
@@ -75,7 +75,7 @@ def prices(
     The next points are solved where they tell most about the sum. Raises BrokenPlugin.
     """
     kinds: dict[tuple[str, str], list[Cut]] = {}
-    for each in cuts(curves, chunk_size(curves)):
+    for each in cuts(curves, is_long(curves)):
         kinds.setdefault(each.curve.labels, []).append(each)
     found = {kind: _Sample(of_it, task) for kind, of_it in kinds.items()}
     samples = list(found.values())

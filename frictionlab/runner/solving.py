@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor
-from dataclasses import replace
 from itertools import chain, count
 from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts, group_size, task_of
+from frictionlab.runner.chunks import QUICK, Cut, Task, cuts, is_long, task_of
 from frictionlab.runner.execute import Solved, grouped, solve_within
 from frictionlab.runner.files import SaveError
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
@@ -50,11 +49,6 @@ class Keeping(NamedTuple):
             if self.must_keep:
                 raise
             return False
-
-    def keep_calls(self, work: OpenChunk) -> None:
-        """Long calls for a chunk that is sent out, if it has a key."""
-        if self.kept is not None and work.key is not None:
-            work.chunk = replace(work.chunk, calls=self.kept.calls(work.key))
 
 
 IN_MEMORY = Keeping()
@@ -99,7 +93,7 @@ class Solving:
         number, shares = share
         own = [(curve.labels, len(curve.rows)) for curve in self.curves]
         if shares > 1:
-            every = enumerate(cuts(self.curves, chunk_size(self.curves)))
+            every = enumerate(cuts(self.curves, is_long(self.curves)))
             own = [(cut.curve.labels, len(cut.rows)) for at, cut in every if at % shares == number - 1]
             self.points = sum(points for _, points in own)
         known = sum(len(part.rows) for part in self.known)
@@ -115,12 +109,11 @@ class Solving:
         def to_solve() -> Iterator[OpenChunk]:
             for each in self._open_chunks():
                 if each.number % shares == number - 1 and not self._is_known(each):
-                    self._keeping.keep_calls(each)
                     forecast.sent(each)
                     yield each
 
         try:
-            force.solve(grouped(to_solve(), group_size(self.curves)), self._take, tick)
+            force.solve(grouped(to_solve(), QUICK[True] if is_long(self.curves) else 1), self._take, tick)
         finally:
             forecast.is_over = True
             if self._keeping.kept is not None and not self._keeping.must_keep:
@@ -173,8 +166,6 @@ class Solving:
             self.found += sum(len(each.left) for each in work.same)
         else:
             self._answers[work.number] = solved.parts
-        if work.chunk.calls is not None:
-            work.chunk.calls.remove()
 
     def _enter(self, work: OpenChunk, part: Part, is_kept: bool) -> None:
         if is_kept and work.key is not None and not self.in_memory:
@@ -192,9 +183,9 @@ class Solving:
 
     def answers(self) -> Iterator[list[Part]]:
         """Of one curve after another, the answers that are there."""
-        numbers, size = count(), chunk_size(self.curves)
+        numbers, long = count(), is_long(self.curves)
         for curve in self.curves:
-            yield [part for cut in cuts([curve], size) for part in self._answer(next(numbers), cut)]
+            yield [part for cut in cuts([curve], long) for part in self._answer(next(numbers), cut)]
 
     def _answer(self, number: int, cut: Cut) -> list[Part]:
         """What was found of a chunk; one that is no longer kept is solved now."""

@@ -43,7 +43,8 @@ def serve() -> None:
     """Answer one scene a line, as JSON, until the input ends; a scene that takes too long ends the process."""
     import frictionlab as fl
 
-    sys.path.insert(0, str(Path(fl.__file__).parents[1]))
+    checkout = Path(fl.__file__).parents[1]
+    sys.path[:0] = [str(checkout), str(checkout / "tests")]
     import conftest  # noqa: F401  # plugins of that checkout
 
     print("ready", flush=True)

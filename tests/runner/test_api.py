@@ -26,7 +26,7 @@ from run_folders import without_stamps
 
 import frictionlab as fl
 from frictionlab.runner import api, table_files
-from frictionlab.runner.chunks import Task, chunk_size, cuts
+from frictionlab.runner.chunks import Task, cuts, is_long
 from frictionlab.runner.files import FolderError, SaveError
 from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.solve import solve
@@ -204,7 +204,7 @@ def test_a_continued_run_solves_what_is_left_of_the_very_chunks_of_a_whole_one()
 def test_no_chunk_is_longer_than_250_points_nor_shorter_than_64_but_for_want_of_points(points: int) -> None:
     speeds = {"scene.belt_speed": {"start": 1, "stop": 40, "num": points}}
     curves = list(parse_study(study(sweep=speeds)).curves())
-    sizes = [len(cut.rows) for cut in cuts(curves, chunk_size(curves))]
+    sizes = [len(cut.rows) for cut in cuts(curves, is_long(curves))]
 
     assert sum(sizes) == points
     assert max(sizes) <= 250

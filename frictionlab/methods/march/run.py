@@ -33,7 +33,6 @@ from frictionlab.methods.march.steppers import (
     steps_through_rest,
 )
 from frictionlab.methods.periodic.problem import along_the_belt
-from frictionlab.methods.under_way import once
 from frictionlab.motion.equation import mean_friction, quickest_of, span
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.body import Mass, in_the_plane, on_the_line
@@ -146,10 +145,9 @@ class MarchRun:
         real = self.straight or self.law.memory_kind == "scalars"
         x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
         z = np.array(place.z.real) if real else place.z.astype(complex)
-        call = KernelCall(march_laps, self.law)
-        numbers = self.body, self.facts.record(pace), way, MarchState(x, v, z)
         history: MarchHistory
-        history, seconds = once(lambda: call.timed(*numbers), self.law, *numbers)
+        numbers = self.body, self.facts.record(pace), way, MarchState(x, v, z)
+        history, seconds = KernelCall(march_laps, self.law).timed(*numbers)
         self.seconds += seconds
         return history
 

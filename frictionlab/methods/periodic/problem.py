@@ -46,7 +46,6 @@ from frictionlab.methods.periodic.period_map import (
 )
 from frictionlab.methods.periodic.setting import table_of_maps
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
-from frictionlab.methods.under_way import once
 from frictionlab.motion.equation import runs_away, swing_of
 from frictionlab.motion.orbit.record import Orbits
 from frictionlab.motion.orbit.recorder import WEIGHTS, Track, track_of
@@ -255,13 +254,8 @@ class PeriodicProblem:
         """What is wanted of the orbits at these belt speeds, and kernel time [s]."""
         span, told = periods * self.common, (belt_speeds, states, goal, wanted)
         if self.kernel is answer_curve:
-            return self._once(KernelCall(answer_curve), self.maps, span, *told)
-        return self._once(KernelCall(self.kernel, self.law), self.body._replace(periods=span), *told)
-
-    def _once(self, call: KernelCall, first: Any, *told: Any) -> Any:
-        """What a kernel finds with maps or a body as its first argument, and kernel time [s]."""
-        own = self.law, self.body if first is self.maps else first
-        return once(lambda: call.timed(first, *told), call.kernel.__name__, *own, *told)
+            return KernelCall(answer_curve).timed(self.maps, span, *told)
+        return KernelCall(self.kernel, self.law).timed(self.body._replace(periods=span), *told)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None], periods: int = 1) -> Orbits:
         """The motions from these states, one for each scene; without panels where there is no state.
@@ -399,15 +393,11 @@ class PeriodicProblem:
     def _follow(
         self, belt_speed: float, state: Floats, most: int, how: Follow, known: KnownOrbit
     ) -> Transient:
-        def followed() -> tuple[Transient, float]:
-            means, states = np.empty(most), np.empty((most + 1, self.size))
-            states[0] = state
-            arguments = float(belt_speed), self.common, how, known, Trail(means, states)
-            (period, count, steps), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
-            way = Transient(period, means[:count], states[1 : count + 1], states[count], seconds, steps)
-            return way, seconds
-
-        return once(followed, "follow", self.law, self.body, belt_speed, state, most, how, known)[0]
+        means, states = np.empty(most), np.empty((most + 1, self.size))
+        states[0] = state
+        arguments = float(belt_speed), self.common, how, known, Trail(means, states)
+        (period, count, steps), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
+        return Transient(period, means[:count], states[1 : count + 1], states[count], seconds, steps)
 
 
 def largest_modulus(matrices: Floats) -> Floats:

@@ -47,7 +47,7 @@ from frictionlab.methods.shooting.undriven_path import (
     UndrivenPath,
     close_shortest,
 )
-from frictionlab.methods.under_way import each_told, once
+from frictionlab.methods.under_way import each_told
 from frictionlab.methods.words import ModelWord
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.motion.orbit.recorder import orbit_at_one_place
@@ -374,7 +374,7 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
     found: dict[int, tuple[Undriven, PeriodicMotion]] = {}
     for i, scene in enumerate(each_told(scenes)):
         undriven = Undriven(scene, law, tolerance)
-        motion, ledger.seconds[i] = once(undriven.motion_or_why_not, scene.belt_speed)
+        motion, ledger.seconds[i] = undriven.motion_or_why_not()
         if isinstance(motion, str):
             ledger.fail(i, motion)
             continue

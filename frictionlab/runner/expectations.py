@@ -37,6 +37,8 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
     """
     of_curves = expectation.shape is not None or expectation.column in CURVE_MEASURES
     whole = curves if of_curves else table
+    if expectation.column is not None and expectation.column not in whole:  # that no row has
+        whole = whole.assign(**{expectation.column: np.nan})
     rows = _matching(expectation.where, whole)
     if rows.empty:
         found = Verdict(False, "no row of the table matches")

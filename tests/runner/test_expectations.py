@@ -41,6 +41,7 @@ FAST = {"scene.belt_speed": 2.0}
         (SLOW, {"column": "mean_friction", "above": 0.1 + 5e-10}, False),
         (SLOW, {"column": "mean_friction", "above": 0.1 + 5e-10, "within": 1e-9}, True),
         (FAST, {"column": "mean_friction", "above": 0.0}, False),
+        (SLOW, {"column": "period_s", "equals": 1.0, "within": 1e-3}, False),  # steady sliding has none
         (FAST | {"method": "exact"}, {"column": "mean_friction", "above": 0.0}, True),
         (SLOW, {"status": "ok"}, True),
         (FAST, {"status": "ok"}, False),

@@ -17,7 +17,7 @@ LIMITS = {
     "methods": 8006,
     "motion": 4599,
     "report": 1772,
-    "runner": 4222,
+    "runner": 4169,
     "scene": 1706,
     "study": 2796,
     "testing": 1491,

@@ -48,22 +48,21 @@ def check_command(
 ) -> None:
     """Check STUDY and tell what it will take: models, refusals, time. No answer is kept, no kernel is compiled.
 
-    The time follows from that of some points, which are solved for a few seconds. The plugins that STUDY lists are
-    Python code, which is run to check it, unless --no-plugins is given.
+    The time follows from that of five points of each law and method, which may take three seconds each. The plugins
+    that STUDY lists are Python code, which is run to check it, unless --no-plugins is given.
     """
     from frictionlab.runner import batch
     from frictionlab.runner.batch import plan
     from frictionlab.runner.chunks import task_of
-    from frictionlab.runner.price import MOST, prices
+    from frictionlab.runner.price import prices
 
     jobs = at_measured(batch.jobs(study, None, overrides, law_files, plugins))
     planned = [(job.name, plan(job.study)) for job in jobs]
-    most = max(1.0, MOST / len(jobs))
     clock, processor = time.perf_counter(), time.process_time()
     with metered() as meter:
-        meter.begins("timing", "points")
+        meter.begins("timing", "laws and methods")
         priced = [
-            list(prices(list(job.study.foreseen().curves()), task_of(job.study), meter, most).values())
+            list(prices(list(job.study.foreseen().curves()), task_of(job.study), meter).values())
             for job in jobs
         ]
     # what other programs leave of a core
@@ -106,7 +105,14 @@ def _price_lines(
     planned: Sequence[Sequence[Planned]], priced: Sequence[Sequence[Price]], busy: float
 ) -> list[str]:
     """Of every study, which are run one after another. busy: how much longer than alone everything takes."""
-    from frictionlab.runner.price import A_CURVE, BESIDES, COMPILING, MOST_DRAWN, solving_seconds
+    from frictionlab.runner.price import (
+        A_CURVE,
+        BESIDES,
+        COMPILING,
+        MOST_DRAWN,
+        MOST_SECONDS,
+        solving_seconds,
+    )
     from frictionlab.runner.progress import spoken
 
     prices = [each for of_study in priced for each in of_study]
@@ -116,10 +122,17 @@ def _price_lines(
     drawn = sum(min(sum(each.curves for each in entries), MOST_DRAWN) for entries in planned)
     besides = busy * (BESIDES * len(planned) + A_CURVE * drawn)
     points = sum(each.points for entries in planned for each in entries)
-    whole = "at least" if any(each.at_least for each in prices) else "about"
+    whole = "at least" if any(each.over for each in prices) else "about"
     measured = min(points, sum(each.measured for each in prices))
     how = f"{spoken(solving)} of it to solve, as measured on {measured} of {points} points"
     lines = [f"{whole} {spoken(solving + compiling + besides)} on {os.cpu_count()} cores, {how}"]
+    lines += [
+        f"{entry.law} by {entry.method}: {price.over} of {price.measured} points that were tried take over "
+        f"{MOST_SECONDS:g} s"
+        for entries, each in zip(planned, priced, strict=True)
+        for entry, price in zip(entries, each, strict=True)
+        if price.over
+    ]
     if kernels:
         names = ", ".join(each.split("_", 1)[1].rpartition("_")[0].replace("_", " ") for each in kernels)
         lines.append(

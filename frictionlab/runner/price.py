@@ -10,33 +10,22 @@ import os
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
-from threading import Thread
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from frictionlab.laws.faults import BrokenPlugin
 from frictionlab.runner.chunks import Chunk, Cut, Task, cuts, is_long
 from frictionlab.runner.execute import OverLimit, solve_timed, under_way, within
 from frictionlab.runner.open_chunks import OpenChunk
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.study.grid import StudyCurve
 
-FEWEST, USUAL, MOST = 0.3, 1.0, 5.0
-"""Seconds spent on points: in any case, if the price is then still ``UNSURE``, and if it is large beside them."""
-SHARE, UNSURE = 0.1, 0.25
-"""Of the price: what is spent to know it, and its standard error where it is known well enough."""
-FEWEST_POINTS = 3
-"""Of all kinds together, unless they take too long."""
-SINGLE, QUICK, GROWTH = 4, 0.01, 4
-"""Points solved one by one; the time [s] of quick ones, after which neighbours are solved together, more and more."""
+MOST_POINTS, MOST_SECONDS = 5, 3.0
+"""Points of a law and method that are solved one by one, and the time [s] that each of them may take."""
+QUICK = 0.01
+"""Time [s] of points that are solved once more as a whole chunk: neighbours share most of what one alone takes."""
 COMPILING, TIMES_QUICKER = 15.0, 100.0
 """Time [s] to compile a kernel, and how many times quicker than Python it then is."""
 BESIDES, A_CURVE, MOST_DRAWN = 4.0, 0.1, 100
 """Time [s] of imports, figures and the report of a run; of each curve in them; curves that are drawn at most."""
-NEXT_PLACE = 0.6180339887498949
-"""Step from place to place along a line of length one on which any number of places are spread evenly."""
 
 
 class Price(NamedTuple):
@@ -44,7 +33,7 @@ class Price(NamedTuple):
 
     start: seconds until its machine code was read. measured: points that were solved to know it, in ``spent``
     seconds. to_compile: kernels that have to be compiled first; without a point measured nothing else is known.
-    at_least: whether a point was left unfinished.
+    over: how many of the points that were tried took longer than ``MOST_SECONDS``, which is counted for them.
     """
 
     seconds: float
@@ -53,12 +42,13 @@ class Price(NamedTuple):
     measured: int
     spent: float
     to_compile: frozenset[str] = frozenset()
-    at_least: bool = False
+    over: int = 0
 
     def record(self) -> dict[str, Any]:
         """As a record of plain values: ``seconds`` is None where kernels have to be compiled before it is known."""
         known = None if self.to_compile and not self.measured else self.seconds
-        return {"seconds": known, "measured": self.measured, "to_compile": sorted(self.to_compile)}
+        told = {"measured": self.measured, "over_3_s": self.over, "to_compile": sorted(self.to_compile)}
+        return {"seconds": known, **told}
 
 
 def solving_seconds(prices: Sequence[Price]) -> float:
@@ -67,120 +57,81 @@ def solving_seconds(prices: Sequence[Price]) -> float:
     return start + max(total / (os.cpu_count() or 1), *(each.longest for each in prices))
 
 
-def prices(
-    curves: Sequence[StudyCurve], task: Task, tell: Progress = silent, most: float = MOST
-) -> dict[tuple[str, str], Price]:
-    """By the labels of law and method, in the order of the curves; nothing is compiled. most: seconds spent on it.
-
-    The next points are solved where they tell most about the sum. Raises BrokenPlugin.
-    """
+def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) -> dict[tuple[str, str], Price]:
+    """By the labels of law and method, in the order of the curves; nothing is compiled. Raises BrokenPlugin."""
     kinds: dict[tuple[str, str], list[Cut]] = {}
     for each in cuts(curves, is_long(curves)):
         kinds.setdefault(each.curve.labels, []).append(each)
-    found = {kind: _Sample(of_it, task) for kind, of_it in kinds.items()}
-    samples = list(found.values())
-    points = sum(each.points for each in samples)
-    while True:
-        spent, known = sum(each.spent for each in samples), sum(each.seconds for each in samples)
-        best, error = max(samples, key=_unsure), math.hypot(*map(_unsure, samples))
-        enough = FEWEST if error < UNSURE * known else min(max(USUAL, SHARE * known), most)
-        few = error == math.inf or sum(each.measured for each in samples) < FEWEST_POINTS
-        left = (most if few else enough) - spent
-        if best.unsure == 0.0 or left < 0.0:
-            break
-        best.solve_more(most)
-        tell(sum(each.measured for each in samples), points, left)
-    solved = [each for each in samples if each.measured]
-    usual = sum(each.seconds for each in solved) / max(1, sum(each.points for each in solved))
-    return {kind: each.price(usual) for kind, each in found.items()}
+    samples = {kind: _Sample(of_it, task) for kind, of_it in kinds.items()}
+    for done, sample in enumerate(samples.values()):
+        tell(done, len(samples), math.nan)
+        sample.solve()
+    solved = [sample for sample in samples.values() if sample.measured]
+    points = sum(sample.points for sample in solved)
+    usual = sum(sample.rate * sample.points for sample in solved) / max(1, points)
+    return {kind: sample.price(usual) for kind, sample in samples.items()}
 
 
 class _Sample:
-    """The points of one law and method, and what solving some of them took; ``over``: nothing more can be learnt."""
+    """The points of one law and method, and what solving some of them took."""
 
     def __init__(self, chunks: list[Cut], task: Task) -> None:
         self._chunks, self._task = chunks, task
-        self._ends = np.cumsum([len(each.rows) for each in chunks])
-        self.points = int(self._ends[-1])
-        self._pieces: list[tuple[int, float]] = []
-        self._at, self._size, self._start = 0.5, 1, 0.0
-        self._to_compile, self._by_python, self._at_least, self._over = frozenset[str](), False, False, False
+        self.points = sum(len(each.rows) for each in chunks)
+        self.rate = self.spent = self._start = 0.0
+        self.measured = self._over = 0
+        self._to_compile, self._by_python = frozenset[str](), False
 
-    @property
-    def measured(self) -> int:
-        """Points, some of them more than once."""
-        return sum(points for points, _ in self._pieces)
-
-    @property
-    def spent(self) -> float:
-        """Seconds that these took."""
-        return sum(seconds for _, seconds in self._pieces)
-
-    @property
-    def seconds(self) -> float:
-        """Of all points, as far as is known."""
-        return self.points * self.spent / self.measured if self._pieces else 0.0
-
-    @property
-    def unsure(self) -> float:
-        """Standard error of ``seconds``: zero where nothing more can be learnt, infinite at first."""
-        if self._over or self.measured >= self.points:
-            return 0.0
-        if not self._pieces:
-            return math.inf
-        rates = [seconds / points for points, seconds in self._pieces]
-        spread = float(np.std(rates, ddof=1)) if len(rates) >= SINGLE else max(rates)
-        return self.points * spread / math.sqrt(len(rates))
-
-    def solve_more(self, seconds: float) -> None:
-        """Solve the next piece, for so long at most."""
+    def solve(self) -> None:
+        """Solve points that are spread evenly over all of them, and a chunk of points that are quick."""
         # brings numba: only where it is needed
         from frictionlab.compile.call import NotKept, seconds_by_python
 
-        chunk, before, start = self._next_piece(), seconds_by_python(), time.perf_counter()
+        before, count, taken = seconds_by_python(), min(MOST_POINTS, self.points), list[float]()
         try:
-            took = within(seconds, _time, chunk)
-            if not self._pieces:  # this call has read what others find read
-                whole = time.perf_counter() - start
-                took = within(seconds, _time, chunk) if took < USUAL / SINGLE else took
+            for k in range(count):
+                taken.append(self._time(self._at((2 * k + 1) * self.points // (2 * count)), k == 0))
+                self.measured, self.rate = len(taken), sum(taken) / len(taken)
+            if self.points > count and max(taken) < QUICK:
+                cut = max(self._chunks, key=lambda each: len(each.rows))
+                self.measured, self.rate = len(cut.rows), self._time(cut.chunk(self._task)) / len(cut.rows)
+        except NotKept as problem:
+            self._to_compile = problem.kernels
+        self._by_python = seconds_by_python() > before
+
+    def _at(self, place: int) -> Chunk:
+        """The point at a place on the line of all points."""
+        for cut in self._chunks:
+            if place < len(cut.rows):
+                break
+            place -= len(cut.rows)
+        return cut.chunk(self._task).of(slice(place, place + 1))
+
+    def _time(self, chunk: Chunk, first: bool = False) -> float:
+        """Seconds that a chunk takes, ``MOST_SECONDS`` a point at most. first: of its kind."""
+        begun = time.perf_counter()
+        try:
+            took = within(MOST_SECONDS * len(chunk.rows), _time, chunk)
+            if first:  # this call has read what others find read
+                whole = time.perf_counter() - begun
+                took = within(MOST_SECONDS, _time, chunk) if took < 0.1 * MOST_SECONDS else took
                 self._start = max(0.0, whole - took)
         except OverLimit:
-            took, self._at_least, self._over = seconds, True, True
-        except NotKept as problem:
-            self._to_compile, self._over = problem.kernels, True
-            return
-        self._by_python = self._by_python or seconds_by_python() > before
-        self._pieces.append((len(chunk.rows), took))
-        if len(self._pieces) >= SINGLE and max(spent for _, spent in self._pieces) < QUICK:
-            self._size *= GROWTH
-
-    def _next_piece(self) -> Chunk:
-        """Neighbours about the next place on the line of all points."""
-        at, self._at = int(self._at * self.points), (self._at + NEXT_PLACE) % 1.0
-        which = int(np.searchsorted(self._ends, at, side="right"))
-        cut = self._chunks[which]
-        size = min(self._size, len(cut.rows))
-        place = at - int(self._ends[which]) + len(cut.rows)
-        first = min(max(0, place - size // 2), len(cut.rows) - size)
-        return cut.chunk(self._task).of(slice(first, first + size))
+            took, self._over = MOST_SECONDS * len(chunk.rows), self._over + 1
+        self.spent += time.perf_counter() - begun
+        return took
 
     def price(self, usual: float) -> Price:
         """What all points take; usual: seconds a point of other laws and methods, where none of these was solved."""
         from frictionlab.compile.call import PYTHON_AT_MOST
 
-        known = self._pieces or self._to_compile
-        seconds = self.seconds if known else usual * self.points
+        seconds = self.points * (self.rate if self.measured or self._to_compile else usual)
         if self._by_python:  # until that has taken too long
             compiled = PYTHON_AT_MOST + seconds / TIMES_QUICKER
             seconds = compiled if self._to_compile else min(seconds, compiled + COMPILING)
         longest = max(len(each.rows) for each in self._chunks) / self.points * seconds
-        return Price(
-            seconds, longest, self._start, self.measured, self.spent, self._to_compile, self._at_least
-        )
-
-
-def _unsure(sample: _Sample) -> float:
-    return sample.unsure
+        found = self.measured, self.spent, self._to_compile, self._over
+        return Price(seconds, longest, self._start, *found)
 
 
 def _time(chunk: Chunk) -> float:
@@ -191,8 +142,6 @@ def _time(chunk: Chunk) -> float:
         return solve_timed(chunk).seconds
 
 
-LEARNS_AFTER, MOST_LEARNING = 2.0, 4.0
-"""Seconds after which points are solved to learn what kinds take whose turn comes late, and how long for."""
 GOES_ON = 0.7
 """What has not told of a point for long goes on for about so many times as long."""
 PointKind = tuple[str, str]
@@ -200,7 +149,7 @@ PointKind = tuple[str, str]
 
 
 class Forecast:
-    """Points left of each kind, and what points of it took. is_over: whether nobody waits any longer."""
+    """Points left of each kind, and what points of it took."""
 
     def __init__(self, points: Iterable[tuple[PointKind, int]]) -> None:
         self._left = Counter[PointKind]()
@@ -209,8 +158,7 @@ class Forecast:
         for kind, count in points:
             self._left[kind] += count
         self._sent: dict[int, OpenChunk] = {}
-        self._begun, self._back, self._learns = time.monotonic(), 0.0, False
-        self.is_over = False
+        self._begun, self._back = time.monotonic(), 0.0
 
     def sent(self, work: OpenChunk) -> None:
         """A chunk is sent out."""
@@ -258,28 +206,3 @@ class Forecast:
         passed = time.monotonic() - self._begun
         at_once = len(running) or max(1.0, self._back / passed if passed > 0.0 else 1.0)
         return max(total / at_once, *rests)
-
-    def learn_from_samples(self, curves: Sequence[StudyCurve], task: Task) -> None:
-        """Once it is time, solve points of the kinds of which nothing is known yet, on a thread of its own."""
-        if self._learns or time.monotonic() - self._begun < LEARNS_AFTER:
-            return
-        self._learns = True
-        pass  # with numba
-
-        def learn() -> None:
-            with suppress(BrokenPlugin):  # the run itself tells of it
-                while (unknown := self._unknown()) and not self.is_over:
-                    chosen = [each for each in curves if each.labels in unknown]
-                    for kind, price in prices(chosen, task, most=MOST_LEARNING).items():
-                        self.learn(kind, price.measured, price.spent)
-                    time.sleep(LEARNS_AFTER)  # kernels may have been compiled by then
-
-        if self._unknown():
-            Thread(target=learn, daemon=True).start()
-
-    def _unknown(self) -> set[PointKind]:
-        """Kinds of which no point is solved, nor told of by a chunk under way."""
-        told = {
-            self._sent[key].kind for key, now in list(under_way.items()) if key in self._sent and now.points
-        }
-        return {kind for kind, count in self._left.items() if count > 0 and not self._solved[kind]} - told

@@ -101,8 +101,6 @@ class Solving:
         self._forecast = forecast = Forecast(own)
 
         def tick() -> None:
-            if progress is not silent:
-                forecast.learn_from_samples(self.curves, self.task)
             done = known + self.found + self.computed + forecast.points_under_way
             progress(done, self.points, forecast.seconds_left())
 
@@ -115,7 +113,6 @@ class Solving:
         try:
             force.solve(grouped(to_solve(), QUICK[True] if is_long(self.curves) else 1), self._take, tick)
         finally:
-            forecast.is_over = True
             if self._keeping.kept is not None and not self._keeping.must_keep:
                 self._keeping.kept.trim()
 

@@ -1,4 +1,4 @@
-"""Curves into chunks of neighbouring belt speeds: what a method is given at once."""
+"""Cut curves into chunks of neighbouring belt speeds, each of which a method is given at once."""
 
 from __future__ import annotations
 
@@ -30,8 +30,11 @@ LONG_STUDY = 20_000
 
 @dataclass(frozen=True)
 class Task:
-    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit and the highest harmonic
-    kept (0: none), the result columns asked for, and the time a point may take [s]."""
+    """Settings that all points of a run share.
+
+    They are the tolerance on mean_friction [-], samples per kept orbit and the highest harmonic kept (0: none), the
+    result columns asked for, and the time a point may take [s].
+    """
 
     tolerance: float
     samples: int = 0
@@ -41,7 +44,7 @@ class Task:
 
 
 def task_of(study: Study) -> Task:
-    """What the points of a study share."""
+    """Return the settings that the points of a study share."""
     kept = study.keep_orbit or 0, study.keep_harmonics or 0
     return Task(study.tolerance, *kept, study.selected(), study.seconds_per_point)
 
@@ -57,20 +60,20 @@ class Chunk:
     task: Task
 
     def of(self, places: Sequence[int] | slice | Places) -> Chunk:
-        """The points at these places."""
+        """Return the points at these places."""
         scenes = self.scenes[places] if isinstance(places, slice) else self.scenes.taken(places)
         return replace(self, rows=self.rows[places], scenes=scenes)
 
 
 class Cut(NamedTuple):
-    """Where a chunk is cut out of a study: its curve, the places on that and the rows of the table."""
+    """Place of a chunk in a study: its curve, the places on that and the rows of the table."""
 
     curve: StudyCurve
     places: Places
     rows: Places
 
     def chunk(self, task: Task) -> Chunk:
-        """The chunk; the law and the method are made here."""
+        """Return the chunk; the law and the method are made here."""
         curve = self.curve
         return Chunk(self.rows, curve.scenes.taken(self.places), curve.law, curve.method.method, task)
 
@@ -81,7 +84,7 @@ def is_long(curves: Sequence[StudyCurve]) -> bool:
 
 
 def cuts(curves: Iterable[StudyCurve], long: bool) -> Iterator[Cut]:
-    """Where curves of a study are cut into chunks, whatever of them is already solved."""
+    """Yield the places where curves of a study are cut into chunks, whatever of them is already solved."""
     for curve in curves:
         rising = np.argsort(curve.scenes.given, kind="stable")
         rows = np.arange(curve.rows.start, curve.rows.stop, curve.rows.step)

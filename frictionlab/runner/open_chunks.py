@@ -1,4 +1,4 @@
-"""What a run has to solve: the chunks of its study, each with the hash of what it computes."""
+"""Chunks of a study that a run has to solve, each with the hash of what it computes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from frictionlab.study.grid import StudyCurve
 
 @dataclass(eq=False)
 class OpenChunk:
-    """A chunk to solve, and where its answers go.
+    """Chunk to solve, and the rows of its answers.
 
     number: its place among all chunks. kind: the labels of its law and its method. whole: the rows of all its points;
     of these ``left`` are the places without an answer. key: the hash of what the whole computes, None where that
@@ -33,16 +33,16 @@ class OpenChunk:
 
     @property
     def is_whole(self) -> bool:
-        """Whether every point of the chunk is to be solved."""
+        """True if every point of the chunk is to be solved."""
         return len(self.left) == len(self.whole)
 
     def of(self, part: Part) -> Part:
-        """The rows that are answered by the answers of a whole chunk, by their places."""
+        """Return the rows that the answers of a whole chunk, by their places in it, answer."""
         answered = part.moved(self.whole)
         return answered if self.is_whole else answered.only(self.left)
 
     def one_answer(self, parts: list[Part]) -> Part:
-        """The answers of a chunk that was solved as a whole, by their places in it."""
+        """Return the answers of a chunk that was solved as a whole, by their places in it."""
         return one_part(parts, self.whole).moved(np.arange(len(self.whole)))
 
 
@@ -52,7 +52,7 @@ def open_chunks(
     finished: NDArray[np.bool_] | None = None,
     keys: Keys | None = None,
 ) -> Iterator[OpenChunk]:
-    """The chunks still to solve. finished: whether each row is.
+    """Yield the chunks still to solve; finished: true for each row that has an answer.
 
     Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
     of one that went through.

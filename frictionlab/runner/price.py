@@ -1,6 +1,7 @@
-"""What solving a study will take: some points, spread over its curves, are solved to know; no answer is kept.
+"""Estimate the time that solving a study takes, and the time that a run has left.
 
-The time that a run has left: by kind of point, learnt from chunks that came back and from those under way.
+Before a run some points, spread over its curves, are solved; no answer is kept. A run learns from chunks that came
+back and from those under way, by law and method.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ BESIDES, A_CURVE, MOST_DRAWN = 4.0, 0.1, 100
 
 
 class Price(NamedTuple):
-    """Of the points of one law and method: seconds on one core, compiling left out, and those of its longest chunk.
+    """Price of the points of one law and method.
+
+    seconds: on one core, without compiling. longest: those of the longest chunk.
 
     start: seconds until its machine code was read. measured: points that were solved to know it, in ``spent``
     seconds. to_compile: kernels that have to be compiled first; without a point measured nothing else is known.
@@ -45,20 +48,23 @@ class Price(NamedTuple):
     over: int = 0
 
     def record(self) -> dict[str, Any]:
-        """As a record of plain values: ``seconds`` is None where kernels have to be compiled before it is known."""
+        """Return plain values; ``seconds`` is None where kernels have to be compiled before it is known."""
         known = None if self.to_compile and not self.measured else self.seconds
         told = {"measured": self.measured, "over_3_s": self.over, "to_compile": sorted(self.to_compile)}
         return {"seconds": known, **told}
 
 
 def solving_seconds(prices: Sequence[Price]) -> float:
-    """Of all together on the cores of this machine, compiling left out."""
+    """Return the seconds of all together on the cores of this machine, compiling left out."""
     total, start = (sum(getattr(each, name) for each in prices) for name in ("seconds", "start"))
     return start + max(total / (os.cpu_count() or 1), *(each.longest for each in prices))
 
 
 def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) -> dict[tuple[str, str], Price]:
-    """By the labels of law and method, in the order of the curves; nothing is compiled. Raises BrokenPlugin."""
+    """Price the points by the labels of law and method, in the order of the curves.
+
+    Nothing is compiled. Raises BrokenPlugin.
+    """
     kinds: dict[tuple[str, str], list[Cut]] = {}
     for each in cuts(curves, is_long(curves)):
         kinds.setdefault(each.curve.labels, []).append(each)
@@ -73,7 +79,7 @@ def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) ->
 
 
 class _Sample:
-    """The points of one law and method, and what solving some of them took."""
+    """Points of one law and method, and the time that solving some of them took."""
 
     def __init__(self, chunks: list[Cut], task: Task) -> None:
         self._chunks, self._task = chunks, task
@@ -100,7 +106,7 @@ class _Sample:
         self._by_python = seconds_by_python() > before
 
     def _at(self, place: int) -> Chunk:
-        """The point at a place on the line of all points."""
+        """Return the point at a place on the line of all points."""
         for cut in self._chunks:
             if place < len(cut.rows):
                 break
@@ -108,7 +114,10 @@ class _Sample:
         return cut.chunk(self._task).of(slice(place, place + 1))
 
     def _time(self, chunk: Chunk, first: bool = False) -> float:
-        """Seconds that a chunk takes, ``MOST_SECONDS`` a point at most. first: of its kind."""
+        """Return the seconds that a chunk takes, ``MOST_SECONDS`` a point at most.
+
+        first: true for the first chunk of a law and method.
+        """
         begun = time.perf_counter()
         try:
             took = within(MOST_SECONDS * len(chunk.rows), _time, chunk)
@@ -122,7 +131,10 @@ class _Sample:
         return took
 
     def price(self, usual: float) -> Price:
-        """What all points take; usual: seconds a point of other laws and methods, where none of these was solved."""
+        """Return the price of all points.
+
+        usual: seconds per point of other laws and methods, taken if none of these was solved.
+        """
         from frictionlab.compile.call import PYTHON_AT_MOST
 
         seconds = self.points * (self.rate if self.measured or self._to_compile else usual)
@@ -135,7 +147,10 @@ class _Sample:
 
 
 def _time(chunk: Chunk) -> float:
-    """Seconds that solving takes, compiling and reading of machine code left out. Raises NotKept, BrokenPlugin."""
+    """Return the seconds that solving takes, without compiling and reading of machine code.
+
+    Raises NotKept, BrokenPlugin.
+    """
     from frictionlab.compile.call import compiling_nothing
 
     with compiling_nothing():
@@ -149,7 +164,7 @@ PointKind = tuple[str, str]
 
 
 class Forecast:
-    """Points left of each kind, and what points of it took."""
+    """Points left of each law and method, and the time that solved ones took."""
 
     def __init__(self, points: Iterable[tuple[PointKind, int]]) -> None:
         self._left = Counter[PointKind]()
@@ -161,32 +176,32 @@ class Forecast:
         self._begun, self._back = time.monotonic(), 0.0
 
     def sent(self, work: OpenChunk) -> None:
-        """A chunk is sent out."""
+        """Note that a chunk is sent out."""
         self._sent[id(work.chunk)] = work
 
     def found(self, kind: PointKind, points: int) -> None:
-        """Points need not be solved."""
+        """Take off points that need not be solved."""
         self._left[kind] -= points
 
     def came_back(self, work: OpenChunk, seconds: float) -> None:
-        """A chunk was solved in so many seconds."""
+        """Note that a chunk was solved in so many seconds."""
         self._sent.pop(id(work.chunk), None)
         self._left[work.kind] -= len(work.left)
         self._back += seconds
         self.learn(work.kind, len(work.left), seconds)
 
     def learn(self, kind: PointKind, points: int, seconds: float) -> None:
-        """So many points of a kind took so long."""
+        """Note that so many points of a kind took so long."""
         self._solved[kind] += points
         self._seconds[kind] += seconds
 
     @property
     def points_under_way(self) -> int:
-        """Points answered in chunks that have not come back."""
+        """Count of points answered in chunks that have not come back."""
         return sum(int(now.points) for key, now in list(under_way.items()) if key in self._sent)
 
     def seconds_left(self) -> float:
-        """Until all points are solved; NaN as long as of a kind that is left nothing is known."""
+        """Return the seconds until all points are solved; NaN while nothing is known of a kind that is left."""
         running = [(self._sent[key], now) for key, now in list(under_way.items()) if key in self._sent]
         waiting, solved, seconds = self._left.copy(), self._solved.copy(), self._seconds.copy()
         for work, now in running:

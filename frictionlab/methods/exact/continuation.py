@@ -71,7 +71,7 @@ def continue_in_speed(forcing: Forcing, belt_speeds: Any, out: Any) -> None:
 
 @inner
 def write_reversal_free(body: Any, coefficient: float, x: float, w: float, row: Any) -> None:
-    """The results where slip never reverses: friction is constant, the motion linear."""
+    """Write the results where slip never reverses: friction is constant, the motion linear."""
     rate = body.damping if body.damping <= 1.0 else 1.0 / (body.damping + body.rate)
     row[MEAN], row[ERROR] = math.copysign(coefficient, body.belt_speed), 8.0 * EPSILON * coefficient
     row[FLOQUET] = math.exp(-rate * body.period)
@@ -81,7 +81,7 @@ def write_reversal_free(body: Any, coefficient: float, x: float, w: float, row: 
 
 @inner
 def write_fixed(body: Any, fixed: Fixed, normal_load: float, row: Any) -> None:
-    """The results at a fixed point of the return map."""
+    """Write the results at a fixed point of the return map."""
     unit = normal_load * body.period
     row[MEAN], row[ERROR] = -fixed.map.friction / unit, impulse_error(body, fixed) / unit
     row[FLOQUET] = largest_multiplier(fixed.map)
@@ -114,7 +114,10 @@ TAU, DURATION, X, W, MODE, PIECE, FACTS = 0, 1, 2, 3, 4, 5, 6
 
 
 class LegTable(NamedTuple):
-    """The legs of a period [rows, FACTS]: how many there are, and how many of them end before the orbit starts."""
+    """Legs of a period [rows, FACTS].
+
+    rows: their count. before: the count of those that end before the orbit starts.
+    """
 
     legs: Any
     rows: int
@@ -143,7 +146,10 @@ def tabulate_legs(body: Any, state: Any, start: float, end: float, legs: Any, fi
 
 @inner
 def panel_length(body: Any, r: float, left: float) -> float:
-    """Length of the next panel, r into a leg: short against drive and free motion, graded where a part decays."""
+    """Return the length of the next panel, r into a leg.
+
+    It is short against drive and free motion, and graded where a part decays.
+    """
     # Overdamped motion has a fast and a slow exponential: panels start at 1/fast and grow in proportion to r. Once
     # the free motion has decayed (r * slow > 40) only the drive limits them.
     fast, slow = 1.0, body.damping
@@ -156,7 +162,7 @@ def panel_length(body: Any, r: float, left: float) -> float:
 
 @inner
 def count_panels(body: Any, legs: Any, rows: int) -> int:
-    """The number of panels of the legs; a leg of no duration has none."""
+    """Count the panels of the legs; a leg of no duration has none."""
     panels = 0
     for row in range(rows):
         r = 0.0
@@ -168,14 +174,14 @@ def count_panels(body: Any, legs: Any, rows: int) -> int:
 
 @inner
 def free_start(body: Any, leg: Any) -> tuple[float, float]:
-    """Displacement and velocity at the start of a leg of slip, beside those of the response to load and friction."""
+    """Return the state at the start of a leg of slip, less that of the response to load and friction."""
     _, _, u, speed, _ = response_at(body, leg[TAU], leg[MODE])
     return leg[X] - u + body.friction * leg[MODE], leg[W] + (body.belt_speed - speed)
 
 
 @inner
 def sample_leg(body: Any, leg: Any, start: Any, r: float) -> tuple[float, float, float]:
-    """Displacement, velocity and friction force a time r into a leg with this free start."""
+    """Return displacement, velocity and friction force a time r into a leg with this free start."""
     load, _, u, speed, limit = response_at(body, leg[TAU] + r, leg[MODE])
     path, vibration = vibration_at(body, leg[TAU] + r)
     if leg[MODE] == STICK:
@@ -190,7 +196,7 @@ def sample_leg(body: Any, leg: Any, start: Any, r: float) -> tuple[float, float,
 
 @inner
 def legs_of_orbit(body: Any, x: float, w: float, shift: float, legs: int) -> LegTable:
-    """A period from canonical time 0, as legs; the orbit starts at ``shift``."""
+    """Return a period from canonical time 0 as legs; the orbit starts at ``shift``."""
     # The state is known at canonical time 0, the orbit starts at ``shift``: the legs before it follow those after it.
     table = np.empty((2 * legs + 8, FACTS))
     state, before = tabulate_legs(body, (x, w), 0.0, shift, table, 0)
@@ -200,7 +206,7 @@ def legs_of_orbit(body: Any, x: float, w: float, shift: float, legs: int) -> Leg
 
 @inner
 def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, track: Track) -> None:
-    """The panels of one period from the end of the first ``before`` legs on, on a track with room for them.
+    """Write the panels of one period, from the end of the first ``before`` legs on, to a track with room for them.
 
     side: -1.0 turns it round, for a belt that moves the other way.
     """
@@ -224,7 +230,7 @@ def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, trac
 
 @njit
 def make_orbits(forcing: Forcing, belt_speeds: Any, states: Any, ends: Any) -> Track:
-    """The panels of every orbit, one orbit after another, that of belt speed i before panel ends[i].
+    """Return the panels of all orbits, one orbit after another; that of belt speed i ends before panel ends[i].
 
     states [n, 5]: canonical (x, w), the legs of a period, 0 where there is no orbit, canonical time of tau = 0, and
     -1 where the mirror image of the scene was solved, else 1.

@@ -43,7 +43,7 @@ RESONANT = 1e-3
 
 
 class Forcing(NamedTuple):
-    """The canonical scenes of a curve, at any belt speed; all that varies repeats after ``period``.
+    """Canonical scenes of a curve, at any belt speed; all that varies repeats after ``period``.
 
     friction: its limit under the mean normal load, coefficient times ``normal_load``. Bounds, each wave counted as
     often as it comes round, for its angle is rounded in proportion: load and size on the load and the response; jolt
@@ -146,7 +146,7 @@ def forcing_of(mass: Mass, coefficient: float) -> Forcing:
 
 
 def _stiffness(frequency: Floats, b: float) -> Any:
-    """Force over displacement; (1 - w)(1 + w) keeps the digits that 1 - w^2 loses near resonance."""
+    """Return force over displacement; (1 - w)(1 + w) keeps the digits that 1 - w^2 loses near resonance."""
     return (1.0 - frequency) * (1.0 + frequency) + 2j * b * frequency
 
 
@@ -180,7 +180,7 @@ def _waves(varying: Varying, b: float, coefficient: float) -> tuple[Floats, floa
 
 
 def _phasors(waves: Waves, frequency: Floats) -> Any:
-    """Along x1, of each of these frequencies, ascending."""
+    """Return the phasors along x1 of each of these frequencies, ascending."""
     found = np.zeros(len(frequency), dtype=np.complex128)
     np.add.at(found, np.searchsorted(frequency, waves.frequency), waves.sine.real + 1j * waves.cosine.real)
     return found
@@ -229,7 +229,7 @@ def _lengths(pieces: Floats) -> Floats:
 
 
 def _reach(pieces: Floats, column: int, terms: int) -> Floats:
-    """A bound in every piece on the polynomial whose derivatives at its start begin in this column."""
+    """Bound, in every piece, the polynomial whose derivatives at its start begin in this column."""
     length, bound = _lengths(pieces), np.abs(pieces[:, column])
     for k in range(1, terms):
         bound = bound + np.abs(pieces[:, column + k]) * length**k / math.factorial(k)
@@ -264,7 +264,7 @@ def _least(waves: Floats, pieces: Floats, side: float, smooth: bool) -> float:
 
 
 def _least_of_parabolas(pieces: Floats, side: float) -> float:
-    """The same where there are no waves: at the ends or at the bottom."""
+    """Find the least value where there are no waves: it lies at the ends or at the bottom."""
     a, b, c = side * pieces[:, PARABOLA : PARABOLA + 3].T
     a, b, length = a + pieces[:, RAMP], b + pieces[:, RAMP + 1], _lengths(pieces)
     bottom = np.clip(-b / np.where(c > 0.0, c, np.inf), 0.0, length)
@@ -273,7 +273,7 @@ def _least_of_parabolas(pieces: Floats, side: float) -> float:
 
 
 def _combined(waves: Floats, pieces: Floats, side: float, piece: Any, r: Floats) -> tuple[Any, Any, Any]:
-    """press + side * load, its rate and the rate of that, a time r into these pieces."""
+    """Return press + side * load, its rate and the rate of that, a time r into these pieces."""
     a, b, c = (side * pieces[piece, PARABOLA + k] for k in range(3))
     a, b = a + pieces[piece, RAMP], b + pieces[piece, RAMP + 1]
     value, rate, bend = a + r * (b + 0.5 * r * c), b + r * c, c + 0.0 * r

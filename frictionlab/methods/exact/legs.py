@@ -33,7 +33,7 @@ STEPS_IN_A_LEG = 1_000_000
 
 
 class LegEnd(NamedTuple):
-    """The end of a leg: how long it lasted, the state there, the net force, the leg that follows.
+    """End of a leg: its duration, the state there, the net force, the leg that follows.
 
     limit: of friction there. event: 1.0 if it ended in an event. keep, turn, damp: those of ``free_motion``, which
     are the entries of the derivative by the state at the start.
@@ -53,7 +53,7 @@ class LegEnd(NamedTuple):
 
 @inner
 def free_motion(body: Any, r: float) -> tuple[float, float, float]:
-    """C + b S, S and C - b S, which lead from the state of the free motion to that a time r later.
+    """Return C + b S, S and C - b S, which lead from the state of the free motion to that a time r later.
 
     C and S: exp(-b r) times cos and sin/rate (cosh and sinh where overdamped), critical damping included.
     """
@@ -73,7 +73,7 @@ def free_motion(body: Any, r: float) -> tuple[float, float, float]:
 
 @inner
 def first_zero(g: float, g1: float, g2: float, bound: float) -> float:
-    """A lower bound, close to it, of the first positive zero of g + g1 r + g2 r^2/2 - bound r^3/6; g >= 0."""
+    """Return a lower bound, close to it, of the first positive zero of g + g1 r + g2 r^2/2 - bound r^3/6; g >= 0."""
     # The cubic first bends upwards and then, for good, downwards. ``base`` is a place before its first zero from
     # which on it only falls, ever faster; -1 if the first zero lies on the way down before that.
     discriminant = g2 * g2 + 2.0 * bound * g1
@@ -103,7 +103,7 @@ def _cubic(r: float, g: float, g1: float, g2: float, bound: float) -> float:
 
 @inner
 def _zero_of_the_convex_part(g: float, g1: float, g2: float, bound: float) -> float:
-    """Newton's method from 0: the cubic is convex there, so that every step stays below the zero."""
+    """Approach the zero by Newton's method from 0: the cubic is convex there, so every step stays below the zero."""
     r = 0.0
     for _ in range(8):
         step = -_cubic(r, g, g1, g2, bound) / (g1 + r * (g2 - 0.5 * bound * r))
@@ -115,7 +115,10 @@ def _zero_of_the_convex_part(g: float, g1: float, g2: float, bound: float) -> fl
 
 @inner
 def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> float:
-    """Beyond ``base`` the cubic is concave: Newton's method from above, then the chord, which ends below the zero."""
+    """Approach the zero beyond ``base``, where the cubic is concave.
+
+    Newton's method comes from above, then the chord, which ends below the zero.
+    """
     height = max(_cubic(base, g, g1, g2, bound), 0.0)
     if height == 0.0:
         return base
@@ -136,7 +139,7 @@ def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> f
 
 @inner
 def _slip_cubic(body: Any, sign: float, y: float, z: float, response: Any) -> tuple[float, float, float]:
-    """Of the slip velocity, positive in its direction: its rate, the rate of that, a bound on the third derivative.
+    """Return the rate of the slip speed, the rate of that, and a bound on the third derivative.
 
     response: of ``response_at`` here.
     """
@@ -155,7 +158,7 @@ def _slip_cubic(body: Any, sign: float, y: float, z: float, response: Any) -> tu
 
 @inner
 def slip_leg(body: Any, tau: float, x: float, w: float, sign: float, left: float) -> LegEnd:
-    """Slip of one sign from (x, w) at tau until it stops, for at most ``left``."""
+    """Follow slip of one sign from (x, w) at tau until it stops, for at most ``left``."""
     friction, response = body.friction * sign, response_at(body, tau, sign)
     load, _, u, speed, limit = response
     # (y, z): the free oscillation, what is left of x and x' without the response and the static shift by friction.
@@ -207,7 +210,7 @@ def slip_noise(body: Any, y: float, z: float) -> float:
 
 @inner
 def after_rest(net: float, limit: float) -> float:
-    """The leg after slip velocity zero under this net force: stick, or slip along the force."""
+    """Return the leg after slip velocity zero under this net force: stick, or slip along the force."""
     if abs(net) <= limit:
         return STICK
     return math.copysign(1.0, net)
@@ -215,7 +218,7 @@ def after_rest(net: float, limit: float) -> float:
 
 @inner
 def stick_leg(body: Any, tau: float, x: float, left: float) -> LegEnd:
-    """Rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
+    """Follow rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
     carried = 2.0 * body.damping * body.belt_speed
     noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + abs(carried))
     bound = max(largest_push(body), TINY)
@@ -252,7 +255,7 @@ def stick_leg(body: Any, tau: float, x: float, left: float) -> LegEnd:
 
 @inner
 def starting_mode(body: Any, tau: float, x: float, w: float) -> float:
-    """Slip of either sign, or stick, at an arbitrary state; a slip velocity of rounding size is zero."""
+    """Return the mode at an arbitrary state, slip of either sign or stick; slip of rounding size is zero."""
     load, _, u, _, limit = response_at(body, tau, 0.0)
     if abs(w) > slip_noise(body, x - u, w):
         return math.copysign(1.0, w)

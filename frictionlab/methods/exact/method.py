@@ -1,4 +1,4 @@
-"""The exact method: closed-form motion between events under Coulomb friction, closed by Newton's method."""
+"""Method ``exact``: closed-form motion between events under Coulomb friction, closed by Newton's method."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ NO_CERTIFY = "is gone: use method certified, which the package frictionlab-certi
 
 
 def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
-    """Why a prescribed slip has no two legs along which the deflection is known."""
+    """Return why a prescribed slip has no two legs along which the deflection is known; None if it has."""
     if scene.constant_contact:
         return ModelWord.STIFF_CONTACT.sentence
     if not law.exact_path():
@@ -49,7 +49,7 @@ def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
 
 
 def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
-    """Why the motion between events is not known in closed form."""
+    """Return why the motion between events is not known in closed form; None if it is."""
     if law.memory_kind != "none":
         return ModelWord.MEMORY.sentence
     if not law.constant_sliding_friction():
@@ -97,7 +97,7 @@ class Exact(Method):
         return suggest_shooting(reason, scene, law) if reason else None
 
     def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:
-        """What it accepts hangs on no belt speed; why it refuses may."""
+        """Return the refusals: what is accepted depends on no belt speed, the reason of a refusal may."""
         if self.refusal(scenes[0], law) is None:
             return [None] * len(scenes)
         return super().refusals(scenes, law)
@@ -110,7 +110,7 @@ class Exact(Method):
 
 
 class _Curve(Ledger):
-    """The scenes of one curve on their way to answers.
+    """Scenes of one curve on their way to answers.
 
     odd: whether one sine is all: turned round, a scene is itself half a period later on a belt that moves the other
     way, and is solved on the one that moves ahead. sides: -1 where that is its mirror image.
@@ -178,7 +178,10 @@ class _Curve(Ledger):
         return (math.copysign(self.coefficient, self.belt_speeds[i]),) * 2
 
     def _depends_on_start(self, i: int, bounds: tuple[float, float], reason: str) -> None:
-        """Not unique, unless the scene says where it starts; bounds: of the mean over all starts."""
+        """Enter a state that is not unique, unless the scene says where it starts.
+
+        bounds: lowest and highest mean over all starts.
+        """
         if self.scenes[i].initial is None or not self._settles(i):
             self.leave_open(i, reason, *bounds, float(self.scenes[i].periods))
             self.model[i] = str(ModelWord.ANY_START)
@@ -201,21 +204,24 @@ class _Curve(Ledger):
         return True
 
     def _start(self, i: int) -> Floats:
-        """Canonical position, slip velocity and time of scene.initial."""
+        """Return canonical position, slip velocity and time of scene.initial."""
         initial, side, (path, vibration) = self.scenes[i].initial, self.sides[i], self.forcing.belt_at_start()
         assert initial is not None
         w = side * (initial.velocity - self.belt_speeds[i] - vibration)
         return np.array([side * (initial.x - path), w, self._shift(side)])
 
     def _shift(self, side: float) -> float:
-        """The canonical time of tau = 0: a sine's phase, half a period on for a belt that moves the other way."""
+        """Return the canonical time of tau = 0.
+
+        It is the phase of a sine, half a period later for a belt that moves the other way.
+        """
         if not self.odd:
             return 0.0
         force = side * self.mass.force
         return math.atan2(force.imag, force.real) % (2.0 * math.pi) / self.mass.frequency
 
     def _solve(self, places: np.ndarray) -> None:
-        """Each belt speed once: both directions share one solution where one sine is all."""
+        """Solve each belt speed once: both directions share one solution where one sine is all."""
         speeds, back = np.unique(self.sides[places] * self.belt_speeds[places] + 0.0, return_inverse=True)
         rows = np.full((len(speeds), curve.COLUMNS), np.nan)
         _, seconds = KernelCall(curve.continue_in_speed).timed(self.forcing, speeds, rows)
@@ -262,7 +268,7 @@ class _Curve(Ledger):
         self.rows[i] = np.nan
 
     def _floquet(self) -> Floats:
-        """In the plane the multipliers of x2 count too; they are known only where friction turns them aside."""
+        """Return the largest multiplier of each scene; in the plane that of x2 counts, too, and is not known."""
         if self.scenes[0].degrees_of_freedom == 1:
             return self.rows[:, curve.FLOQUET]
         # x2 obeys x2'' + (2 b2 wr + f/|w|) x2' + wr^2 x2 = 0 along the orbit: no closed form, and not computed.
@@ -273,7 +279,7 @@ class _Curve(Ledger):
         return Multipliers(known, SALTATION * np.maximum(known, 1.0), [""] * len(known))
 
     def _orbits(self, places: Sequence[int]) -> Orbits:
-        """Of the scenes at these places; without panels where there is none."""
+        """Return the orbits of the scenes at these places; one that does not exist has no panels."""
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
         speeds, legs = self.belt_speeds[list(places)], np.nan_to_num(rows[:, curve.LEGS])
         sides = self.sides[list(places)]

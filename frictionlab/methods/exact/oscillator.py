@@ -43,7 +43,7 @@ from frictionlab.methods.exact.forcing import (
 
 
 class Held(NamedTuple):
-    """What varies where kernels see it: a bare pointer to the table, whose references nobody counts.
+    """Forcing as kernels hold it: a bare pointer to the table, whose references nobody counts.
 
     terms: count of the waves. pieces: place of the first of ``segments`` pieces. Others: as in ``Forcing``.
     """
@@ -59,7 +59,7 @@ class Held(NamedTuple):
 
 
 class Oscillator(NamedTuple):
-    """The canonical scene at one belt speed; ``piece``: the one that holds now.
+    """Canonical scene at one belt speed; ``piece``: the one that holds now.
 
     rate: |1 - damping^2|^(1/2); friction: its limit under the mean normal load; size, load, jolt: of ``Forcing``.
     """

@@ -1,4 +1,4 @@
-"""The return map of a mass under Coulomb friction over the period of its forces, its derivative and its fixed point.
+"""Return map of a mass under Coulomb friction over the period of its forces, its derivative and its fixed point.
 
 State (x, w) of the canonical scene at a whole number of periods, after a corner there; w = x' - belt_speed. In the
 energy norm sqrt(x^2 + w^2) the distance of two orbits of one scene never grows (Leine & van de Wouw, 2008), so an
@@ -32,7 +32,7 @@ SHORTEST = 1e-6
 
 
 class Passage(NamedTuple):
-    """The end of a stretch of motion.
+    """End of a stretch of motion.
 
     xx .. ww: derivative of the end by the start; friction: integral of the friction force (it resists); by_x,
     by_w: its derivative by the start; legs: their number; stick: time at rest on the belt; alike: 1.0 where all legs
@@ -94,8 +94,11 @@ def passage(body: Any, x: float, w: float, start: float, end: float) -> Passage:
 
 @inner
 def saltation(net: float, limit: float, before: float, after: float) -> tuple[float, float]:
-    """Derivatives at the end of slip of sign ``before``: of the slip velocity after it by that before it, and of the
-    friction impulse by the slip velocity."""
+    """Return derivatives at the end of slip of sign ``before``.
+
+    The first is that of the slip velocity after it by that before it, the second that of the friction impulse by the
+    slip velocity.
+    """
     # Stick: every velocity near zero becomes zero. Its friction balances the net force from the event on, so that a
     # velocity difference is taken by friction in full.
     if after == STICK:
@@ -107,13 +110,13 @@ def saltation(net: float, limit: float, before: float, after: float) -> tuple[fl
 
 @inner
 def stuck_impulse(body: Any, tau: float, x: float, r: float) -> float:
-    """Integral of the net force over a time r of stick that starts at tau."""
+    """Integrate the net force over a time r of stick that starts at tau."""
     pushed = impulse_of_load(body, tau, r)
     return pushed - r * (2.0 * body.damping * body.belt_speed + x + 0.5 * body.belt_speed * r)
 
 
 class Fixed(NamedTuple):
-    """A fixed point, the map from it, its residual |map - state|, and the number of maps computed."""
+    """Fixed point, the map from it, its residual |map - state|, and the number of maps computed."""
 
     x: float
     w: float
@@ -124,7 +127,9 @@ class Fixed(NamedTuple):
 
 @inner
 def periodic_state(body: Any, x: float, w: float, most: int) -> Fixed:
-    """The periodic state near (x, w): damped Newton's method, with iterations of the map where it does not converge.
+    """Find the periodic state near (x, w).
+
+    Damped Newton's method, with iterations of the map where it does not converge.
 
     Where the map is smooth the residual decreases along a Newton step, so a step that is too long is shortened first:
     the onset of stick or of slip changes the derivative abruptly.
@@ -159,7 +164,7 @@ def periodic_state(body: Any, x: float, w: float, most: int) -> Fixed:
 
 @inner
 def unknown(x: float, w: float) -> Passage:
-    """A passage of no time: the state before the first map."""
+    """Return a passage of no time: the state before the first map."""
     return Passage(x, w, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0)
 
 
@@ -185,7 +190,7 @@ def room_to_stick(body: Any, x: float) -> float:
 
 @inner
 def whole_periods_of_stick(body: Any, here: Passage) -> float:
-    """Displacement of a mass that sticks for a whole period, over all whole periods until friction is exceeded."""
+    """Return the displacement of a mass that sticks, over all whole periods until friction is exceeded."""
     if here.stick < body.period or body.belt_speed == 0.0:
         return 0.0
     carried = abs(body.belt_speed) * body.period
@@ -195,7 +200,7 @@ def whole_periods_of_stick(body: Any, here: Passage) -> float:
 
 @inner
 def scales(body: Any, x: float, w: float) -> tuple[float, float]:
-    """The magnitudes of the numbers whose rounding errors enter x and w over one period."""
+    """Return the magnitudes of the numbers whose rounding errors enter x and w over one period."""
     length = body.size + body.friction + abs(x)
     speed = largest_swing(body) + abs(body.belt_speed) + abs(w)
     reach = min(body.period, 1.0)
@@ -211,8 +216,11 @@ def rounding(body: Any, x: float, w: float) -> float:
 
 @inner
 def impulse_error(body: Any, fixed: Fixed) -> float:
-    """Error of the friction impulse over one period: residual and rounding of the map, times the sensitivity of the
-    steady state to them, from the adjoint of the map."""
+    """Bound the error of the friction impulse over one period.
+
+    It is residual and rounding of the map, times the sensitivity of the steady state to them, by the adjoint of the
+    map.
+    """
     # (of_x, of_w) = (by_x, by_w) (I - M)^-1: the change of the impulse when the map is perturbed in x or w and the
     # fixed point moves accordingly.
     here = fixed.map
@@ -231,7 +239,7 @@ def impulse_error(body: Any, fixed: Fixed) -> float:
 
 @inner
 def largest_multiplier(here: Passage) -> float:
-    """The largest modulus of the eigenvalues of the derivative of the map."""
+    """Return the largest modulus of the eigenvalues of the derivative of the map."""
     # The modulus of a complex pair, or the larger one of a real pair, which is free of cancellation.
     half, determinant = 0.5 * (here.xx + here.ww), here.xx * here.ww - here.xw * here.wx
     square = half * half - determinant

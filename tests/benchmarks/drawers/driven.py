@@ -6,7 +6,6 @@ import random
 
 import numpy as np
 from campaign import Drawn
-from frictionlab.methods.shooting.saturated import saturates_in_the_plane
 
 from drawers import every_law
 from frictionlab.methods.shooting.decoupled import axes_apart
@@ -25,5 +24,4 @@ def draw(rng: np.random.Generator) -> Drawn | None:
     kind = f"{one['family']}, {'line' if one['freedom'] == 1 else 'plane'}"
     found = Drawn(kind, scene, one["law"], method="exact" if exact else "shooting")
     made, law = found.made()
-    alone = law_in_scene(law, made)
-    return None if saturates_in_the_plane(made, alone) or axes_apart(made, alone) else found
+    return None if axes_apart(made, law_in_scene(law, made)) else found

@@ -1,6 +1,6 @@
 """Random scenes of every kind that the contract names, as the plain keys of a study, with a law.
 
-Drawn from numpy's generator by the thousands (``Numpy``) or by Hypothesis, which shrinks them (``every_kind``,
+Drawn from numpy's generator by the thousands (``Numpy``) or by Hypothesis, which shrinks them (``driven``,
 ``convergent``, ``creeping``): one description for both.
 """
 
@@ -133,11 +133,12 @@ def prescribed(source: Source) -> Keys:
     return keys | {"belt_speed": source.among((-1.0, 1.0, 1.0)) * fastest * log(source, 0.02, 1.3)}
 
 
-def law(source: Source, mu: float, speed: float, length: float) -> Keys:
+LAWS = "coulomb", "coulomb", "static", "stribeck", "dahl", "lugre", "falling lugre", "dupont"
+
+
+def law(source: Source, mu: float, speed: float, length: float, kinds: Sequence[str] = ()) -> Keys:
     """Any law that the tests' own integration knows; speed, length: of the motion, which its parameters go with."""
-    kind = source.among(
-        ("coulomb", "coulomb", "static", "stribeck", "dahl", "lugre", "falling lugre", "dupont")
-    )
+    kind = source.among(tuple(kinds) or LAWS)
     presliding = {"presliding_length": length * log(source, 3e-3, 10.0)}
     falls = {"mu_static": mu * source.uniform(1.0, 1.6), "stribeck_speed": speed * log(source, 0.1, 2.0)}
     damped = presliding | {"damping": source.among((0.0, 0.01, 0.1)) * mu / speed}
@@ -159,15 +160,20 @@ def convergent_scene(source: Source) -> tuple[Keys, Keys]:
     return body(source, source.among((True, False, False, False, False)), mu), {"kind": "coulomb", "mu": mu}
 
 
-def scene_of_every_kind(source: Source) -> tuple[Keys, Keys]:
+DRIVEN = "line", "line", "plane", "prescribed"
+
+
+def scene_of_every_kind(
+    source: Source, kinds: Sequence[str] = DRIVEN, laws: Sequence[str] = ()
+) -> tuple[Keys, Keys]:
     """Any scene that is driven or moved, and any law; bristles under a changing load with either contact."""
-    mu, kind = log(source, 0.1, 1.0), source.among(("line", "line", "plane", "prescribed"))
+    mu, kind = log(source, 0.1, 1.0), source.among(tuple(kinds))
     scene = prescribed(source) if kind == "prescribed" else body(source, kind == "plane", mu)
     speed = abs(scene["belt_speed"])
     part = next(
         scene[name] for name in ("drive", "slip", "belt_vibration", "normal_load_variation") if name in scene
     )
-    own = law(source, mu, speed, speed / part["frequency"])
+    own = law(source, mu, speed, speed / part["frequency"], laws)
     if "presliding_length" in own and "normal_load_variation" in scene:
         scene["normal_load_variation"]["contact"] = source.among(("per_load", "constant"))
     return scene, own
@@ -221,9 +227,17 @@ def convergent(draw: Any) -> tuple[Keys, Keys]:
 
 
 @st.composite
-def every_kind(draw: Any) -> tuple[Keys, Keys]:
-    """``scene_of_every_kind`` for Hypothesis."""
-    return scene_of_every_kind(_Hypothesis(draw))
+def driven(draw: Any, kind: str, laws: Sequence[str] = ()) -> tuple[Keys, Keys]:
+    """``scene_of_every_kind`` for Hypothesis: on the line, in the plane or under a prescribed slip."""
+    return scene_of_every_kind(_Hypothesis(draw), (kind,), laws)
+
+
+@st.composite
+def undriven_of_any_law(draw: Any, laws: Sequence[str] = ()) -> tuple[Keys, Keys]:
+    """``undriven`` for Hypothesis, and a law whose lengths go with the stretch of the spring."""
+    source = _Hypothesis(draw)
+    scene, mu = undriven(source), log(source, 0.1, 1.0)
+    return scene, law(source, mu, abs(scene["belt_speed"]), mu * scene["normal_load"], laws)
 
 
 @st.composite

@@ -24,7 +24,7 @@ A, B, E3, E5, C = (
     np.ascontiguousarray(table) for table in (DOP853.A, DOP853.B, DOP853.E3, DOP853.E5, DOP853.C)
 )
 STAGES = len(B)
-MOST_STEPS_OF_A_PERIOD = 3_000_000
+MOST_STEPS_OF_A_PERIOD = 200_000
 
 
 class Body(NamedTuple):

@@ -65,8 +65,8 @@ class Outside(NamedTuple):
     steps: int
 
 
-MOST_STEPS = 2_000_000
-"""Until the motion repeats."""
+MOST_STEPS = 500
+"""For each period that is allowed until the motion repeats."""
 ROUNDING = 2e-14
 """Of a mean, over some hundred steps."""
 
@@ -130,16 +130,25 @@ def steady(
 
     Its error: the change from a hundred times the tolerance, and what may be still to come.
     """
-    problem = _Problem(scene, law, tolerance)
+    problem = _Problem(scene, law, tolerance, MOST_STEPS * periods)
     fine, closing, last = problem.settled(problem.state_of(start), periods)
-    coarse, _, _ = _Problem(scene, law, 100.0 * tolerance).settled(last, periods)
+    coarse, _, _ = _Problem(scene, law, 100.0 * tolerance, MOST_STEPS * periods).settled(last, periods)
     return fine._replace(error=abs(fine.mean - coarse.mean) + closing + ROUNDING, closing=closing)
+
+
+def period_map(scene: dict[str, Any], law: dict[str, Any], start: tuple[float, ...]) -> tuple[float, float]:
+    """Position and velocity along a belt that does not vibrate, a period after this start."""
+    problem = _Problem(scene, law, 1e-13)
+    end = problem.map(problem.state_of(start))[0]
+    return float(end[X1]), float(end[W1] + scene["belt_speed"])
 
 
 class _Problem:
     """A scene and a law in numbers, and its period map."""
 
-    def __init__(self, scene: dict[str, Any], law: dict[str, Any], tolerance: float) -> None:
+    def __init__(
+        self, scene: dict[str, Any], law: dict[str, Any], tolerance: float, most_steps: float = math.inf
+    ) -> None:
         self.force: Forcing = forcing(scene)
         self.body, self.law, self.tolerance = body(scene), friction(law, scene), tolerance
         self.lasts = float(self.force.edges[-1])
@@ -147,7 +156,7 @@ class _Problem:
         self.scale = self._scale()
         quickest = max(self.body.quickest, self.force.fastest)
         self.longest = min(2.0 * math.pi / quickest / 40.0, self.lasts / 20.0)
-        self.side, self.signs, self.steps = 1, np.zeros(2), 0.0
+        self.side, self.signs, self.steps, self.most_steps = 1, np.zeros(2), 0.0, most_steps
 
     def _scale(self) -> np.ndarray:
         """A size of each number of the state and of the integrals, rather too small than too large."""
@@ -189,7 +198,7 @@ class _Problem:
                 self.signs,
             )
             self.steps += tally[3]
-            if not np.isfinite(end).all() or self.steps > MOST_STEPS:
+            if not np.isfinite(end).all() or self.steps > self.most_steps:
                 raise Unsettled("too many steps")
             state, total, tallies = end[:STATES].copy(), total + end, tallies + tally
         return state, total, tallies

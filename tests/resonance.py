@@ -8,10 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.laws.dahl import Dahl
-from frictionlab.laws.elasto_plastic import ElastoPlastic
-from frictionlab.laws.lugre import LuGre
-from frictionlab.laws.memory import BristleLaw
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
@@ -42,16 +38,3 @@ def reference_curve(file: str) -> dict[str, Any]:
     with (Path(__file__).parent / "reference" / file).open() as lines:
         rows = list(csv.DictReader(lines))
     return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
-
-
-def bristles_of(row: Any) -> BristleLaw:
-    """The law of a row of ``dynamic_laws_system.csv`` (z_ss, s) or of ``bristle_*.csv``."""
-    kind, mu = row.get("law", row.get("kind")), row.get("mu_kinetic", 0.4)
-    length = float(row.get("z_ss", row.get("presliding_length")))
-    if kind == "dahl":
-        return Dahl(mu=mu, presliding_length=length)
-    if kind != "lugre":
-        return ElastoPlastic(mu_kinetic=mu, presliding_length=length)
-    falls = {name: row[name] for name in ("mu_static", "stribeck_speed") if name in row}
-    damped = {"contact_damping": float(row["s"]) ** 0.5} if "s" in row else {"damping": row["damping"]}
-    return LuGre(mu_kinetic=mu, presliding_length=length, **damped, **falls)

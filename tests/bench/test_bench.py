@@ -522,9 +522,9 @@ def test_a_peer_refuses_what_it_is_not_set_up_for(name: str) -> None:
 # --- peers of bristle laws ----------------------------------------------------------------------------------------
 
 BRISTLES = LuGre(mu_kinetic=0.4, presliding_length=5e-2, damping=4e-4)
-BRISTLES_MEAN = 0.23164774756257994  # W4a of bristle_w4.csv
+BRISTLES_MEAN = 0.23164774756257994  # bristles W4a of truth.csv
 IN_THE_PLANE = ElastoPlastic(mu_kinetic=0.4, presliding_length=1.0)
-MEAN_IN_THE_PLANE = 0.012659382313928562  # bristle_more.csv
+MEAN_IN_THE_PLANE = 0.012659382313928562  # bristles plane of truth.csv
 
 
 @pytest.mark.parametrize("name", ["scipy_bristle", "numbalsoda"])

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +13,6 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.motion.orbit.recorder import DERIVATIVE, WEIGHTS
 from frictionlab.scene.scene import Scene
 
-REFERENCE = Path(__file__).parents[2] / "reference"
 LAW = Coulomb(mu=0.4)
 SPEEDS = [-30.0, -3.0, 0.7, 12.0, 40.0]
 DRIVE = {"unbalance": 10.0, "frequency": 1.0}
@@ -241,17 +237,3 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
         refusal = Exact().refusal(scene(3.0, **changes), LAW)
         assert reason in refusal
         assert "use shooting" in refusal
-
-
-def test_random_scenes_are_those_of_an_unrelated_integration():
-    """``reference/random_line.csv``, under one sine and under waveforms; ``make_outside.py`` wrote it."""
-    with (REFERENCE / "random_line.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    for row in rows:
-        one, law = Scene(**json.loads(row["scene"])), Coulomb(mu=float(row["mu"]))
-        for tolerance in (1e-6, 1e-9):
-            answers = solve([one], tolerance, law)
-            off = abs(answers.mean[0].real - float(row["mean_friction"]))
-            assert answers.status == ["ok"], row
-            assert off <= answers.error[0] + float(row["accuracy"]), row
-    assert len(rows) == 80

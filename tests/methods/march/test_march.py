@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import collocation
 import numpy as np
 import pytest
 from answered import with_columns
-from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
 from profiles import deep, some
@@ -25,19 +23,10 @@ from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.motion.orbit.read import read_columns
-from frictionlab.scene.scene import Drive, Initial, Load, Scene, Transverse
+from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
 from frictionlab.values.notes import WrongValues
 
 LAW = Coulomb(mu=0.4)
-PLANAR = sorted(REFERENCE.glob("planar_fig*.csv"))
-FIGURES = {
-    (4.0, 1.0): 45.0,
-    (2.0, 1.0): 30.0,
-    (1.5, 1.0): 28.0,
-    (1.0, 1.0): 52.0,
-    (1.5, 10.0): 28.0,
-    (1.0, 10.0): 52.0,
-}
 LEINE = Stribeck(curve="hyperbolic", mu_static=1.0, mu_kinetic=0.0, stribeck_speed=1.0 / 3.0)
 BLOCK = Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.2)
 FALLING = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1.0, stribeck_exponent=1.0)
@@ -56,38 +45,6 @@ def covered(answers, expected, known_to=1e-10):
 
 
 # --- against methods that step nothing ----------------------------------------------------------------------------
-
-
-@some(1, "seconds of steps")
-@pytest.mark.parametrize("figure", FIGURES, ids=str)
-def test_ten_points_of_every_figure_along_the_belt_agree_with_the_exact_method(figure):
-    frequency, load = figure
-    drive = Drive(unbalance=10.0, frequency=frequency)
-    scenes = [scene(v, normal_load=load, drive=drive) for v in np.linspace(0.5, FIGURES[figure], 10).tolist()]
-    answers = solve(scenes, tolerance=3e-4)
-    assert answers.status == ["ok"] * 10
-    assert np.all(answers.columns["error"] <= 3e-4)
-    assert covered(answers, with_columns(Exact(), scenes, LAW, 1e-11).columns["mean_friction"])
-
-
-@some(1, "seconds of steps")
-@pytest.mark.parametrize("path", PLANAR, ids=lambda path: path.stem)
-def test_ten_points_of_every_figure_in_the_plane_agree_with_the_reference(path):
-    table = np.genfromtxt(path, delimiter=",", names=True)[1:]
-    table = table[np.linspace(0, len(table) - 1, 10).astype(int)]
-    numbers = collocation.numbers_of(path, 0.0)
-    across = Transverse(
-        natural_frequency=numbers.natural_frequency, damping_ratio=0.1, load=Load(unbalance=10.0)
-    )
-    drive = Drive(unbalance=10.0, frequency=numbers.frequency)
-    load = numbers.friction / 0.4
-    scenes = [scene(v, normal_load=load, drive=drive, transverse=across) for v in table["v_b"].tolist()]
-    answers = solve(scenes, tolerance=1e-4)
-    assert answers.status == ["ok"] * 10
-    assert np.all(answers.columns["error"] <= 1e-4)
-    assert covered(answers, table["mu_bar_dop853"])
-    assert answers.columns["mean_friction_transverse"] == pytest.approx(table["mu2_bar"], abs=1e-4)
-    assert answers.columns["velocity_harmonic"] == pytest.approx(table["V1"], rel=2e-3)
 
 
 @pytest.mark.parametrize("smoothing", ["tanh", "arctan"])
@@ -235,15 +192,6 @@ def test_smoothing_shortens_the_period_of_leines_block_by_the_published_share(sm
     assert 100.0 * (period / PERIOD - 1.0) == pytest.approx(percent, abs=6e-3)
     exact = 0.31582076645  # of the unsmoothed block, by stepping a million times per unit of time
     assert covered(answers, exact)
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_two_level_friction_without_damping_has_the_period_of_its_closed_form(side):
-    one = Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.3 * side)
-    answers = solve(one, Coulomb(mu=0.4, mu_static=0.6), 1e-6)
-    period = 2.0 * 0.2 / 0.3 + 2.0 * math.pi - 2.0 * math.atan(0.2 / 0.3)
-    assert answers.columns["period"][0] * 2.0 * math.pi == pytest.approx(period, rel=1e-4)
-    assert answers.columns["mean_friction"][0] == pytest.approx(0.4 * side, abs=answers.columns["error"][0])
 
 
 @some(1, "seconds of steps")

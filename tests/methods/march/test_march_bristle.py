@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from profiles import deep
 from resonance import at_resonance as scene
-from resonance import bristles_of
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
@@ -31,35 +28,12 @@ from frictionlab.methods.march.method import March
 from frictionlab.motion.contact import advance_bristle, project_to_yield
 from frictionlab.motion.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
-from frictionlab.scene.scene import Drive, Load, Scene, Transverse
+from frictionlab.scene.scene import Load, Scene, Transverse
 
-REFERENCE = Path(__file__).parents[2] / "reference"
 STEPPERS = {"rk4": Rk4(), "sdirk2": Sdirk2()}
 compiling = deep("more kernels to compile")
-KNOWN = 2e-7
-"""Accuracy of the reference rows of a mass; of prescribed slip 5e-9."""
 STEADY = LuGre(mu_kinetic=0.4, presliding_length=1.0, damping=0.05)
 FALLING = LuGre(mu_kinetic=0.25, mu_static=0.4, stribeck_speed=10.0, presliding_length=1.0, damping=0.05)
-
-
-def rows_of(kind, planar):
-    """Reference rows of a law, on the line or in the plane, both presliding lengths and several belt speeds."""
-    with (REFERENCE / "dynamic_laws_system.csv").open() as file:
-        rows = [
-            row for row in csv.DictReader(file) if row["law"] == kind and (row["omega_r"] != "none") == planar
-        ]
-    return rows[5::11][:3] if planar else rows[3::23]
-
-
-def scene_of(row):
-    """The scene of a reference row."""
-    across = None
-    if row["omega_r"] != "none":
-        across = Transverse(
-            natural_frequency=float(row["omega_r"]), damping_ratio=0.1, load=Load(unbalance=10.0)
-        )
-    drive = Drive(unbalance=10.0, frequency=float(row["Omega"]))
-    return scene(float(row["v_b"]), normal_load=float(row["gamma2"]), drive=drive, transverse=across)
 
 
 def solve(one, law, tolerance=1e-5, **keys):
@@ -67,27 +41,6 @@ def solve(one, law, tolerance=1e-5, **keys):
 
 
 # --- against references ------------------------------------------------------------------------------------------
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize(
-    ("kind", "stepper", "planar"),
-    [
-        pytest.param("lugre", "sdirk2", False, marks=compiling),
-        ("dupont", "rk4", False),
-        pytest.param("lugre", "sdirk2", True, marks=compiling),
-        pytest.param("lugre", "rk4", False, marks=compiling),
-        pytest.param("dahl", "sdirk2", True, marks=compiling),
-        pytest.param("lugre", "rk4", True, marks=compiling),
-    ],
-)
-def test_the_error_covers_the_reference(kind, stepper, planar):
-    for row in rows_of(kind, planar):
-        answers = solve(scene_of(row), bristles_of(row), stepper=stepper)
-        assert answers.status == ["ok"]
-        error = answers.columns["error"][0]
-        assert error <= 1e-5
-        assert abs(answers.columns["mean_friction"][0] - float(row["mu_bar"])) <= error + KNOWN
 
 
 # --- orders -------------------------------------------------------------------------------------------------------

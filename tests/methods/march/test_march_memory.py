@@ -9,10 +9,8 @@ from memory_laws import elements
 from profiles import deep
 from rate_and_state import RateAndState
 
-from frictionlab.laws.jenkins import Jenkins
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.steppers import STEPPERS, fewest_steps
-from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip
 
 compiling = deep("more kernels to compile")
@@ -42,18 +40,6 @@ def solve(method, scene, law, tolerance):
 def agree(one, other):
     """Whether two answers agree within their errors."""
     return abs(one[0] - other[0]) <= one[1] + other[1]
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("belt_speed", [0.5, 5.0])
-def test_one_element_is_marched_to_the_mean_of_jenkins_friction(belt_speed):
-    scene, jenkins = driven(belt_speed), Jenkins(mu=0.4, stiffness=4.0)
-
-    found = solve(March(), scene, ONE, 1e-4)
-
-    assert found[1] <= 1e-4
-    assert agree(found, solve(March(stepper="rk4"), scene, jenkins, 1e-4))
-    assert agree(found, solve(Shooting(), scene, jenkins, 1e-8))
 
 
 @deep("more kernels to compile")

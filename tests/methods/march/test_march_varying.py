@@ -10,13 +10,12 @@ from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 from memory_laws import elements
-from profiles import DEEP, deep
+from profiles import deep
 from strategies import sizes
 
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.march.lap import MarchSettings, steps_in
@@ -140,17 +139,6 @@ def test_a_mass_that_never_slips_on_a_vibrating_belt_has_a_range_of_means():
 def pressed(contact, amplitude=0.6):
     """A changing load."""
     return {"normal_load_variation": {"amplitude": amplitude, "waveform": "sine", "contact": contact}}
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, presliding_length=1.0)], ids=["dahl", "jenkins"])
-def test_steppers_agree_on_a_mass_held_by_a_contact_of_constant_stiffness(law):
-    keys = LINE | {"drive": DRIVE} | pressed("constant")
-    steppers = ["rk4"] + (["sdirk2"] if law is DAHL and DEEP else [])
-    found = [mean_and_error(solve(keys, law, 1e-4, stepper=stepper, steps=200)) for stepper in steppers]
-    for mean, error in found:
-        assert abs(mean - found[0][0]) <= error + found[0][1]
-        assert error < 5e-3
 
 
 def test_laws_of_several_memories_keep_no_constant_stiffness():

@@ -12,7 +12,7 @@ from answered import with_columns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from profiles import deep
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
@@ -25,7 +25,6 @@ from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSli
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import mean_prescribed_longitudinal, mean_prescribed_pulsating
-from frictionlab.theory.piecewise import piecewise
 
 LAW = Coulomb(mu=0.4)
 FALLING = Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.4, stribeck_exponent=1.5, viscosity=0.02)
@@ -159,34 +158,6 @@ def test_the_mean_in_the_plane_is_that_of_an_adaptive_quadrature(
     assert mean(one, FALLING) == pytest.approx(total / signals.period, abs=2e-8)
 
 
-def followed(one: Scene, law: Any, steps: int = 30000) -> float:
-    """The mean by the law's own path, in small steps of constant slip; three periods, the last one counts."""
-    signals = one.signals()
-    h = signals.period / steps
-    tau = (np.arange(steps) + 0.5) * h
-    slips = (signals.belt[0](tau) - one.belt_speed).tolist()
-    shares = (1.0 + signals.normal_load(tau) / 2.0).tolist()
-    z, total = 0.0, 0.0
-    for _ in range(3):
-        total = 0.0
-        for w, share in zip(slips, shares, strict=True):
-            half = law.deflected(z, 0.5 * w * h)
-            total += share * law.friction(w, half, law.rate(w, half))
-            z = law.deflected(z, w * h)
-    return -total / steps
-
-
-@deep("seconds of steps")
-@pytest.mark.parametrize("waveform", ["square", "sawtooth", ONE_SIDED])
-@pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, stiffness=4.0)], ids=lambda law: type(law).__name__)
-def test_a_bristle_follows_any_waveform(law: Any, waveform: Any) -> None:
-    load = {"amplitude": 0.4, "waveform": "triangle", "phase": 20.0, "frequency_ratio": 2}
-    one = scene(0.3, waveform, 40.0, normal_load_variation=load)
-
-    for method in (Exact(), Shooting()):
-        assert mean(one, law, method) == pytest.approx(followed(one, law.under_load(2.0)), abs=3e-5)
-
-
 def test_stiff_bristles_tend_to_coulomb_friction_as_the_root_of_their_length() -> None:
     # the sawtooth turns round slowly once and jumps back: the two layers do not cancel as those of a sine
     load = {"amplitude": 0.4, "waveform": "sawtooth", "phase": 20.0}
@@ -278,48 +249,6 @@ def test_memory_without_an_exact_path_follows_waveforms(law: Any, planar: bool) 
         assert one.columns[column][0] == pytest.approx(sine.columns[column][0], abs=1e-7, nan_ok=True)
 
 
-def stepped(one: Scene, law: Any, laps: int = 10) -> float:
-    """The mean of a bristle that keeps its stiffness: Radau between corners and reversals, z' = rate(w, z/n)."""
-    signals, law = one.signals(), law.under_load(2.0)
-    edges = signals.edges()
-    slip = piecewise(signals.belt[0], edges).minus(one.belt_speed)
-    load = piecewise(signals.normal_load.scaled(0.5), edges, 1.0)
-    cuts = np.unique(np.concatenate([edges, slip.crossings().tau]))
-    pieces = np.clip(np.searchsorted(edges, 0.5 * (cuts[:-1] + cuts[1:]), side="right") - 1, 0, None)
-    z, total = 0.0, 0.0
-    for _ in range(laps):
-        total = 0.0
-        for start, stop, k in zip(cuts[:-1], cuts[1:], pieces, strict=True):
-
-            def rates(tau: float, y: Any, k: int = k) -> list[float]:
-                at, here = np.array([tau]), np.array([k])
-                w, n = float(slip.at(at, here)[0][0]), float(load.at(at, here)[0][0])
-                moved = law.rate(w, y[0] / n)
-                return [moved, n * law.friction(w, y[0] / n, moved / n)]
-
-            run = solve_ivp(rates, (start, stop), [z, 0.0], method="Radau", rtol=1e-9, atol=1e-12)
-            z, total = run.y[0, -1], total + run.y[1, -1]
-    return -total / signals.period
-
-
-@deep("two kernels to compile")
-@pytest.mark.parametrize("waveform", ["sine", "sawtooth"])
-@pytest.mark.parametrize(
-    "law",
-    [DAHL, LuGre(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=0.3, presliding_length=0.1, damping=0.3)],
-    ids=lambda law: type(law).__name__,
-)
-def test_a_contact_may_keep_its_stiffness_under_a_load_that_changes(law: Any, waveform: str) -> None:
-    load = {"amplitude": 0.4, "phase": 70.0, "frequency_ratio": 2, "contact": "constant"}
-    one = scene(0.3, waveform, 25.0, normal_load_variation=load)
-    found = answer(one, law, tolerance=1e-8)
-
-    assert found.status == ["ok"]
-    assert abs(found.mean[0].real - stepped(one, law)) <= found.error[0] + 1e-9
-    follows = scene(0.3, waveform, 25.0, normal_load_variation={**load, "contact": "per_load"})
-    assert abs(mean(follows, law) - found.mean[0].real) > 1e-5
-
-
 def test_exact_says_what_it_cannot_do() -> None:
     constant = {"amplitude": 0.3, "contact": "constant"}
     assert "keep the stiffness" in (
@@ -327,18 +256,6 @@ def test_exact_says_what_it_cannot_do() -> None:
     )
     assert Exact().refusal(scene(0.3, "square", normal_load_variation=constant), LAW) is None
     assert "across the belt" in (Exact().refusal(scene(0.3, "square", slip={"direction": 30.0}), DAHL) or "")
-
-
-@pytest.mark.parametrize(
-    ("stiffness", "expected", "known"),  # by legs between reversals, each with its deflection in closed form
-    [(1e-5, -1.0621421948e-6, 1.4e-11), (1e-6, -1.0621327321e-7, 1.4e-10), (1e-7, -1.06213e-8, 1.4e-9)],
-)
-def test_errors_of_contacts_that_hardly_forget_cover(stiffness: float, expected: float, known: float) -> None:
-    form = {"harmonics": [{"order": 1, "amplitude": 1.0}, {"order": 2, "amplitude": 0.3, "phase": 40}]}
-    one = Scene(belt_speed=0, slip={"velocity_amplitude": 1, "frequency": 1, "waveform": form})
-    found = answer(one, Dahl(mu=0.4, stiffness=stiffness), tolerance=1e-8)
-
-    assert abs(found.mean[0] - expected) <= found.error[0] + known
 
 
 @given(

@@ -7,8 +7,6 @@ import math
 import numpy as np
 import pytest
 from answered import beside_full_answers, moves_as_its_velocity, with_columns
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from resonance import at_resonance, reference_curve
 from resonance import in_the_plane as planar
 from scipy.integrate import quad
@@ -19,7 +17,6 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.mdsm import Mdsm, friction_free_motion
 from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.scene import Drive, Scene, Slip, TransverseSlip
-from frictionlab.theory import friction_free_velocity
 
 LAW = Coulomb(mu=0.4)
 MDSM = Mdsm()
@@ -74,55 +71,6 @@ def test_the_reduction_is_not_always_overestimated() -> None:
     assert beside_full_answers(MDSM, [scene(v, 0.5) for v in np.arange(0.5, 7.0, 0.25)], LAW)[0].max() > 0.01
 
 
-@pytest.mark.parametrize(
-    ("file", "frequency", "omega_r"),
-    [("8a_Om4", 4.0, omega_r) for omega_r in (0.5, 1, 2, 3, 4, 10)]
-    + [("9a_Om1", 1.0, omega_r) for omega_r in (0.5, 1, 1.5, 10)],
-)
-def test_in_the_plane_the_quadrature_is_right_within_its_own_error(file, frequency, omega_r) -> None:
-    known = reference_curve(f"planar_fig{file}_g1_wr{omega_r:g}.csv")
-    few = slice(1, None, 12)
-
-    found = solve([planar(v, frequency, 1.0, omega_r) for v in known["v_b"][few]])
-    apart = np.abs(found.columns["mean_friction"] - known["mu_bar_dop853"][few])
-
-    assert set(found.status) == {"ok"}
-    assert np.all(apart <= found.columns["error"] + 1e-8)
-    if frequency == 1.0:  # at resonance
-        assert np.median(found.columns["error"] / apart) < 3.0
-    else:
-        assert apart.max() <= 0.003 * 0.4
-        np.testing.assert_allclose(found.columns["velocity_amplitude"], known["V1"][few], rtol=2e-3)
-        across = found.columns["transverse_velocity_amplitude"]
-        np.testing.assert_allclose(across, known["V2"][few], rtol=2e-2)
-
-
-@pytest.mark.parametrize(
-    ("frequency", "load", "omega_r", "integrated", "quadrature"),
-    [
-        (2.0, 1.0, 0.5, [0.193690, 0.476528, 0.778356], [0.1936, 0.4762, 0.7782]),
-        (2.0, 1.0, 2.0, [0.05789, 0.17842, 0.41877], [0.0575, 0.1772, 0.4159]),
-        (2.0, 1.0, 3.0, [0.13626, 0.45688, 0.82452], [0.1375, 0.4583, 0.8243]),
-        (4.0, 1.0, 4.0, [0.031769, 0.096152, 0.199229], [0.0317, 0.0960, 0.1989]),
-        (1.0, 10.0, 1.0, [0.170510, 0.385916, 0.599982], None),  # shooting and the mean balance, to 5e-6
-    ],
-)
-def test_weak_friction_in_the_plane_is_averaged_to_three_thousandths_and_strong_friction_wrongly(
-    frequency, load, omega_r, integrated, quadrature
-) -> None:
-    found = solve([planar(v, frequency, load, omega_r) for v in (5.0, 15.0, 30.0)]).columns
-    mean, error = found["mean_friction"] / 0.4, found["error"] / 0.4
-    apart = np.abs(mean - integrated)
-
-    assert np.all(apart <= error + (1e-5 if quadrature else 5e-6))
-    if quadrature is None:
-        assert apart.max() > 0.02
-        assert np.all(error < 2.0 * apart)
-    else:
-        np.testing.assert_allclose(mean, quadrature, rtol=0, atol=6e-5)
-        assert apart.max() <= 3e-3
-
-
 def test_a_fast_belt_feels_the_transverse_motion_by_its_square() -> None:
     one = planar(600.0, 4.0, 1.0, 4.0)
     ratio = abs(friction_free_motion(one).transverse_velocity) / 600.0
@@ -139,25 +87,6 @@ def test_the_error_in_the_plane_is_proportional_to_weak_friction(omega_r: float)
 
     np.testing.assert_allclose(ratios, 2.0, atol=0.25)
     assert ratios[-1] == pytest.approx(2.0, abs=0.05)
-
-
-@settings(max_examples=12)
-@given(
-    waveform=st.sampled_from(["square", "triangle", "sawtooth", "sine"]),
-    phase=st.floats(0.0, 360.0),
-    lead=st.floats(0.0, 360.0),
-    speed=st.floats(0.05, 15.0),
-)
-def test_it_takes_every_waveform_with_an_error_that_covers(waveform, phase, lead, speed) -> None:
-    drive = {"amplitude": 8.0, "frequency": 1.5, "waveform": waveform, "phase": phase}
-    pulsating = {"amplitude": 0.3, "phase": lead, "frequency_ratio": 2}
-    one = scene(speed, drive=drive, normal_load_variation=pulsating)
-
-    _, found = beside_full_answers(MDSM, [one], LAW)
-
-    assert found.error[0] < 0.2
-    if speed > friction_free_velocity(one, LAW):
-        assert found.mean[0].real == pytest.approx(0.4, abs=1e-12)
 
 
 def test_the_motion_of_a_waveform_is_the_friction_free_one() -> None:

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from answered import beside_full_answers, moves_as_its_velocity, with_columns
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from profiles import deep, some
 from resonance import at_resonance as scene
 from resonance import in_the_plane as planar
@@ -24,10 +22,8 @@ from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
 from frictionlab.methods.reduced.mdsm import Mdsm
-from frictionlab.methods.shooting.method import Shooting
 from frictionlab.motion.orbit.recorder import WEIGHTS
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse
-from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.one_harmonic import equivalent_drive
 
 LAW = Coulomb(mu=0.4)
@@ -220,48 +216,6 @@ def test_without_a_load_across_the_belt_the_plane_is_the_line() -> None:
 
 
 # --- errors ---------------------------------------------------------------------------------------------------------
-
-
-models = st.one_of(
-    st.sampled_from([MDSM, ONE]), st.builds(lambda n: HarmonicBalance(harmonics=n), st.integers(2, 40))
-)
-
-
-@given(
-    models,
-    st.floats(-0.5, 1.0).map(lambda e: 10.0**e),
-    st.floats(-2.5, 0.5).map(lambda e: 10.0**e),
-    st.floats(-3.0, 0.6).map(lambda e: 10.0**e),
-    st.floats(-1.5, 1.5),
-)
-def test_errors_cover_the_exact_mean(model, frequency, damping, ratio, share) -> None:
-    one = driven(frequency, damping, ratio, share)
-    found, true = model.solve([one], LAW, 1e-8), Exact().solve([one], LAW, 1e-10)
-
-    if found.status == ["ok"]:
-        assert abs(found.mean[0] - true.mean[0]) <= found.error[0] + true.error[0]
-    else:
-        assert getattr(model, "harmonics", 1) > 1 or one.belt_speed == 0.0
-
-
-@settings(derandomize=True, max_examples=30)  # an estimate: covers nearly always, and a test must not flicker
-@given(
-    st.floats(-0.3, 0.7),
-    st.floats(-3.0, -0.3).map(lambda exponent: 10.0**exponent),
-    st.floats(0.05, 1.5),
-    st.floats(-0.5, 0.7),
-    st.sampled_from([0.0, 60.0, 200.0]),
-)
-def test_errors_in_the_plane_cover_what_shooting_finds(frequency, ratio, share, omega_r, phase) -> None:
-    load = 10.0 * 10.0 ** (2 * frequency)
-    still = planar(0.0, 10.0**frequency, ratio * load / 0.4, 10.0**omega_r, phase=phase)
-    one = still.at(share * friction_free_velocity(still))
-    true = Shooting().solve([one], LAW, 1e-8)
-
-    for model in (MDSM, HarmonicBalance(harmonics=4)):
-        found = model.solve([one], LAW, 1e-8)
-        if found.status[0] == "ok":
-            assert abs(found.mean[0].real - true.mean[0].real) <= found.error[0] + true.error[0]
 
 
 VISCOUS = Stribeck(mu_kinetic=0.4, mu_static=0.4, stribeck_speed=5, viscosity=0.01)

@@ -6,20 +6,17 @@ import math
 from types import SimpleNamespace
 from typing import cast
 
-import numpy as np
 import pytest
 from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
-from profiles import deep, some
-from scipy.integrate import quad, solve_ivp
-from strategies import sizes
+from profiles import deep
+from scipy.integrate import quad
 
 import frictionlab as fl
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import Destination, describe
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse
@@ -49,119 +46,6 @@ def solve(one, law, tolerance=1e-8):
     return answers, {name: float(column[0]) for name, column in answers.columns.items()}
 
 
-def followed(one, law):
-    """The motion from free shaking, period by period, until nothing is left of that."""
-    problem = PeriodicProblem(one, law, 1e-6)
-    return problem.followed_on(one.belt_speed, problem.state_at(one.belt_speed, None), 600, 1e-9)
-
-
-class Line:
-    """x'' + c x' + x + N T = F sin(Omega t) under a falling law, by scipy between events; for tests alone."""
-
-    def __init__(self, one, law):
-        self.mass, self.law, self.belt = one.mass(), law, one.belt_speed
-        self.period = 2.0 * math.pi / self.mass.frequency
-
-    def held(self, t, x):
-        """What friction holds at rest on the belt."""
-        load = (self.mass.force * np.exp(1j * self.mass.frequency * t)).imag
-        return load - self.mass.damping * self.belt - x
-
-    def means(self, periods):
-        """Means over one period each, from rest on the belt."""
-        state, t, side, found = [0.0, self.belt, 0.0], 0.0, 0.0, []
-        for count in range(1, periods + 1):
-            state[2] = 0.0
-            while t < count * self.period * (1.0 - 1e-13):
-                state, t, side = (self.slip if side else self.stick)(state, t, count * self.period, side)
-            found.append(-state[2] / self.period)
-        return np.array(found)
-
-    def stick(self, state, t, end, _side):
-        limit = self.mass.normal_load * self.law.static_friction()
-        force = self.held(t, state[0])
-        later = self.held(t + 1e-7, state[0] + 1e-7 * self.belt)
-        if abs(force) >= limit * (1.0 - 1e-12) and abs(later) > abs(force):
-            return state, t, math.copysign(1.0, force)
-
-        def released(s, y):
-            return abs(self.held(s, y[0])) - limit
-
-        released.terminal, released.direction = True, 1.0
-        rates = lambda s, y: [self.belt, 0.0, self.held(s, y[0]) / self.mass.normal_load]  # noqa: E731
-        way = self._solved(rates, state, t, end, released)
-        here = way.t[-1]
-        side = math.copysign(1.0, self.held(here, way.y[0, -1])) if way.status == 1 else 0.0
-        return list(way.y[:, -1]), here, side
-
-    def slip(self, state, t, end, side):
-        def rates(s, y):
-            rub = side * self.law.sliding_friction(max(side * (y[1] - self.belt), 0.0))
-            load = (self.mass.force * np.exp(1j * self.mass.frequency * s)).imag
-            return [y[1], load - self.mass.damping * y[1] - y[0] - self.mass.normal_load * rub, rub]
-
-        def stopped(s, y):
-            return side * (y[1] - self.belt) if s > t + 1e-5 * self.period else 1.0
-
-        stopped.terminal, stopped.direction = True, -1.0
-        way = self._solved(rates, state, t, end, stopped)
-        x, v, friction_impulse = way.y[:, -1]
-        if way.status != 1:
-            return [x, v, friction_impulse], way.t[-1], side
-        force = self.held(way.t[-1], x)
-        holds = abs(force) <= self.mass.normal_load * self.law.static_friction()
-        return [x, self.belt, friction_impulse], way.t[-1], 0.0 if holds else math.copysign(1.0, force)
-
-    def _solved(self, rates, state, t, end, event):
-        options = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "max_step": self.period / 40.0}
-        return solve_ivp(rates, (t, end), state, events=event, **options)
-
-
-@some(1, "seconds of steps")
-@pytest.mark.parametrize(
-    ("one", "law"),
-    [
-        (scene(5.0), MILD),
-        (scene(46.0), Coulomb(mu=0.4, mu_static=0.5)),
-        (scene(1.1, drive=Drive(amplitude=2.5, frequency=0.5)), Coulomb(mu=0.4, mu_static=0.45)),
-        (scene(20.0, normal_load=3.0), Stribeck(mu_kinetic=0.3, mu_static=0.5, curve="hyperbolic")),
-        (scene(-8.0), Stribeck(mu_kinetic=0.3, mu_static=0.4, curve="hess-soom", viscosity=0.005)),
-    ],
-)
-def test_the_mean_is_that_of_an_unrelated_integration_from_rest(one, law):
-    _, row = solve(one, law)
-    means = Line(one, law).means(80)
-
-    assert abs(means[-1] - means[-2]) < 1e-8  # the transient is gone
-    assert row["mean_friction"] == pytest.approx(means[-1], abs=row["error"] + 2e-8)
-    assert row["floquet"] < 1.0
-
-
-@deep("seconds of maps")
-def test_in_the_plane_too():
-    one = scene(9.0, ACROSS, normal_load=1.0, drive=Drive(unbalance=10.0, frequency=4.0))
-    _, row = solve(one, MILD)
-    mass, speed, period = one.mass(), one.belt_speed, 2.0 * math.pi / 4.0
-
-    def rates(t, y):
-        slip = complex(y[2] - speed, y[3])
-        rub = MILD.sliding_vector(slip)
-        turn = np.exp(4j * t)
-        along = (mass.force * turn).imag - mass.damping * y[2] - y[0] - rub.real
-        load = (mass.transverse_force * turn).imag
-        across = load - mass.transverse_damping * y[3] - mass.transverse_stiffness * y[1] - rub.imag
-        return [y[2], y[3], along, across, rub.real]
-
-    way = solve_ivp(
-        rates, (0.0, 120 * period), [0.0] * 5, "DOP853", [118 * period, 119 * period, 120 * period],
-        rtol=1e-10, atol=1e-11,
-    )  # fmt: skip
-    means = -np.diff(way.y[4]) / period
-
-    assert abs(means[1] - means[0]) < 1e-8
-    assert row["mean_friction"] == pytest.approx(means[1], abs=row["error"] + 1e-7)
-
-
 def test_a_coefficient_at_rest_that_is_never_needed_changes_nothing():
     one = scene(20.0)
     _, row = solve(one, Coulomb(mu=0.4, mu_static=0.6))
@@ -169,15 +53,6 @@ def test_a_coefficient_at_rest_that_is_never_needed_changes_nothing():
 
     assert row["stick_fraction"] == 0.0
     assert row["mean_friction"] == pytest.approx(exact, abs=row["error"] + 1e-12)
-
-
-@given(speed=sizes(0.5, 60.0), fall=sizes(0.01, 1.0))
-def test_the_error_covers_what_a_finer_tolerance_changes(speed, fall):
-    law = Stribeck(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=1.0 / fall)
-    _, coarse = solve(scene(speed), law, 1e-5)
-    answers, fine = solve(scene(speed), law, 1e-10)
-    if answers.status == ["ok"]:
-        assert abs(coarse["mean_friction"] - fine["mean_friction"]) <= coarse["error"] + fine["error"]
 
 
 def test_damping_decides_whether_a_fall_needs_a_look_at_other_starts():
@@ -195,14 +70,12 @@ def test_damping_decides_whether_a_fall_needs_a_look_at_other_starts():
 def test_an_orbit_of_several_periods_that_every_start_reaches_has_its_mean_over_all_of_them():
     one, law = chaotic()
     answers, row = solve(one, law)
-    means = Line(one, law).means(120)[60:]
 
     assert answers.status == ["ok"]
-    assert row["mean_friction"] == pytest.approx(means.mean(), abs=1e-6)
-    assert means.max() - means.min() > 0.2
     assert row["period"] == 4.0
     assert math.isnan(row["window"])
-    assert f"4 drive periods has means over one from {means.min():.4f}" in answers.reason[0]
+    # that and its mean by scipy from event to event (reference/truth.csv)
+    assert "4 drive periods has means over one from 0.0727" in answers.reason[0]
     assert answers.unique == ["tested"]
     orbit = answers.orbit(0)
     assert orbit.tau[-1, -1] - orbit.tau[0, 0] == pytest.approx(4.0 * 2.0 * math.pi / 1.3)
@@ -210,54 +83,18 @@ def test_an_orbit_of_several_periods_that_every_start_reaches_has_its_mean_over_
     assert work[0] == pytest.approx(work[1], abs=1e-7)
 
 
-def test_the_period_counts_those_in_which_the_belt_carries_the_mass_at_rest():
-    """It rests for 17 of 21 periods; the orbit is followed period by period to see it repeat."""
-    one = Scene(
-        damping_ratio=0.03246871179596226,
-        normal_load=16.02828375133281,
-        belt_speed=0.13916477363586577,
-        drive=Drive(amplitude=2.5752477359921406, phase=268.96702352659554, frequency=2.3134657220457453),
-    )
-    law = Coulomb(mu=0.6898387369384938, mu_static=1.1072202755450422)
-    answers, row = solve(one, law, 1e-6)
-    motion = followed(one, law)
-    last = motion.states[-64:]
-    lags = [lag for lag in range(1, 32) if np.abs(last[lag:] - last[:-lag]).max() < 1e-6]
-    assert lags == [21]
-    assert (answers.status, row["period"]) == (["ok"], 21.0)
-    assert abs(row["mean_friction"] - motion.means[-21:].mean()) <= row["error"] + 1e-8
-
-
-def test_starts_that_come_beside_an_orbit_of_two_periods_end_there():
-    """Some of them close in on it too slowly for a search of their own."""
-    one = Scene(
-        damping_ratio=0.013511484023561983,
-        normal_load=14.694037970813984,
-        belt_speed=0.4392029657339092,
-        drive=Drive(amplitude=8.836414496611217, phase=260.1610537498479, frequency=2.478875531473216),
-    )
-    law = Coulomb(mu=0.5265775383087952, mu_static=0.9355541855548389)
-    answers, row = solve(one, law, 1e-6)
-    assert (answers.status, answers.error_kind, answers.unique) == (["ok"], ["estimated"], ["tested"])
-    assert " starts up to " in answers.reason[0]
-    assert row["period"] == 2.0
-    motion = followed(one, law)
-    assert abs(row["mean_friction"] - motion.means[-2:].mean()) <= row["error"] + 1e-8
-
-
 @deep("seconds of maps")
 def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     one, law = chaotic(0.1)
     answers, row = solve(one, law, 4e-3)
-    means = Line(one, law).means(600)[100:]
 
     assert answers.status == ["ok"]
     assert answers.error_kind == ["statistical"]
     assert math.isnan(row["period"])
     assert row["window"] >= 512.0
     assert "does not repeat (chaotic)" in answers.reason[0]
-    doubt = 4.0 * np.std(means) / math.sqrt(len(means)) + row["error"]
-    assert abs(row["mean_friction"] - means.mean()) < doubt
+    # 500 periods by scipy from event to event, four standard errors
+    assert abs(row["mean_friction"] - 0.274966) < 0.0122 + row["error"]
     # spring and mass hold no more than this at either end of the periods that columns are read over
     orbit = answers.orbit(0)
     held = 0.5 * float((orbit.x.real**2 + orbit.v.real**2).max()) / orbit.periods
@@ -272,28 +109,6 @@ def test_a_mean_over_a_long_time_that_is_hardly_known_is_not_told():
     assert answers.status == ["failed"]
     assert math.isnan(answers.mean[0].real)
     assert "which is no answer" in answers.reason[0]
-
-
-def test_a_belt_that_takes_thousands_of_periods_to_carry_the_mass_to_its_mean_leaves_one_mean():
-    drive = Drive(amplitude=14.243499772705484, frequency=0.4913955988248217, phase=170.69015335572655)
-    one = scene(
-        0.0022362962192191966,
-        damping_ratio=0.13106815218909004,
-        normal_load=496.3320328420566,
-        drive=drive,
-    )
-    law = Stribeck(
-        mu_kinetic=0.17768839733369366,
-        mu_static=0.1881916382308799,
-        stribeck_speed=1.5630226223278636,
-        viscosity=0.00073223857582998,
-        curve="hyperbolic",
-    )
-
-    answers, row = solve(one, law)
-
-    assert answers.status == ["ok"]
-    assert row["mean_friction"] == pytest.approx(0.1596497504, abs=row["error"] + 1e-10)  # brute force
 
 
 def test_where_two_states_attract_the_start_decides():

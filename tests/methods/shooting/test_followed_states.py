@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 from itertools import count
 
 import numpy as np
 import pytest
+from outside_state import period_map
 from profiles import deep, some
-from test_falling_friction import Line
+from truth import law_of
 
 import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem
@@ -19,10 +19,13 @@ from frictionlab.methods.shooting.driven import SteadyStates
 from frictionlab.methods.shooting.followed_states import FROM_ABOVE, follow_states
 from frictionlab.methods.shooting.method import Shooting
 
-STEEP = fl.Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_exponent=1.0)
-SCENE = fl.Scene(
-    damping_ratio=0.01, normal_load=10.0, belt_speed=0.4, drive=fl.Drive(unbalance=0.2, frequency=1.3)
-)
+FALLS_STEEPLY = {
+    "kind": "stribeck", "mu_static": 0.4, "mu_kinetic": 0.2, "stribeck_speed": 1.0, "stribeck_exponent": 1.0
+}  # fmt: skip
+STEEP = law_of(FALLS_STEEPLY)
+DRIVEN = {"unbalance": 0.2, "frequency": 1.3}
+KEYS = {"damping_ratio": 0.01, "normal_load": 10.0, "belt_speed": 0.4, "drive": DRIVEN}
+SCENE = fl.Scene(**KEYS)
 STICKS = fl.Scene(
     damping_ratio=0.0107, normal_load=0.1366, belt_speed=0.1105,
     drive=fl.Drive(amplitude=0.6194, frequency=0.3485, phase=34.8),
@@ -120,15 +123,9 @@ def test_orbits_of_two_and_three_periods_live_side_by_side(states):
 
 def test_their_points_follow_each_other_in_an_unrelated_integration(states):
     for one in states[:2]:
-        line, here = Line(at(SCENE, 0.4), STEEP), []
-        for k in range(one.period):
-            state, t, side = [one.x[k], one.velocity[k], 0.0], 0.0, math.copysign(1.0, one.velocity[k] - 0.4)
-            side = 0.0 if abs(one.velocity[k] - 0.4) < 1e-12 else side
-            while t < line.period * (1.0 - 1e-13):
-                state, t, side = (line.slip if side else line.stick)(state, t, line.period, side)
-            here.append((state[0], state[1]))
-        expected = np.roll(np.column_stack([one.x, one.velocity]), -1, axis=0)
-        assert np.array(here) == pytest.approx(expected, abs=2e-5)
+        path = np.column_stack([one.x, one.velocity])
+        here = [period_map(KEYS, FALLS_STEEPLY, tuple(point)) for point in path.tolist()]
+        assert np.array(here) == pytest.approx(np.roll(path, -1, axis=0), abs=2e-5)
 
 
 def test_python_gets_them_as_a_table():

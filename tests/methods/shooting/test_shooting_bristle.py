@@ -1,81 +1,35 @@
-"""Shooting on bristles along the belt: unrelated references, every stiffness, reversals, states not unique."""
+"""Shooting on bristles: every stiffness, reversals, states that are not unique, and the forms of the plane."""
 
 from __future__ import annotations
 
+import math
 import re
-from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 from answered import with_columns
-from profiles import deep, some
-from resonance import bristles_of
+from profiles import deep
+from resonance import at_resonance, in_the_plane
 
 import frictionlab as fl
+from frictionlab.bench.peers.equations import OnBristles, one_period
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.methods.base import Answers
 from frictionlab.methods.shooting.method import Shooting
 
-REFERENCE = Path(__file__).parents[2] / "reference"
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-W4 = pd.read_csv(REFERENCE / "bristle_w4.csv")
-MORE = pd.read_csv(REFERENCE / "bristle_more.csv")
-
-
-def scenes(belt_speeds: np.ndarray, normal_load: float = 10.0, frequency: float = 1.0) -> list[fl.Scene]:
-    drive = fl.Drive(unbalance=10.0, frequency=frequency)
-    return [
-        fl.Scene(damping_ratio=0.1, normal_load=normal_load, belt_speed=speed, drive=drive)
-        for speed in belt_speeds
-    ]
-
-
-def compared(answers: Answers, expected: np.ndarray, accuracy: np.ndarray | float, tolerance: float) -> None:
-    """Every answer is there, within its error, and its error within the tolerance."""
-    assert set(answers.status) == {"ok"}
-    errors = answers.columns["error"]
-    assert (errors <= tolerance).all()
-    assert (np.abs(answers.columns["mean_friction"] - expected) <= errors + accuracy).all()
-
-
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-9])
-@pytest.mark.parametrize("workload", ["W4a", "W4b", "W4c", "W4d"])
-def test_stiff_bristles_are_true_to_the_reference_at_every_tolerance(workload: str, tolerance: float) -> None:
-    rows = W4[W4["workload"] == workload].sort_values("belt_speed")
-    answers = with_columns(Shooting(), scenes(rows["belt_speed"]), bristles_of(rows.iloc[0]), tolerance)
-    compared(answers, rows["mean_friction"].to_numpy(), rows["accuracy"].to_numpy(), tolerance)
-
-
-def test_falling_and_elasto_plastic_bristles_are_true_to_the_reference() -> None:
-    rows = MORE[MORE["omega_r"] == "none"].reset_index(drop=True)
-    keys = ["kind", "mu_kinetic", "mu_static", "stribeck_speed", "presliding_length", "damping"]
-    for _, curve in rows.groupby(keys, dropna=False):
-        curve = curve.sort_values("belt_speed")
-        law = bristles_of(curve.iloc[0])
-        if isinstance(law, fl.LuGre) and law.stribeck_speed == 1.0:
-            curve = curve.iloc[-1:]  # falls too fast for one start to do: every point asks four
-        answers = with_columns(Shooting(), scenes(curve["belt_speed"]), law, 1e-8)
-        ok = np.array([status == "ok" for status in answers.status])
-        low, high = answers.columns["mean_low"], answers.columns["mean_high"]
-        mean, error, expected = (
-            answers.columns["mean_friction"],
-            answers.columns["error"],
-            curve["mean_friction"],
-        )
-        assert ((np.abs(mean - expected) <= error + 1e-11) | ~ok).all()
-        # where starts disagree, the reference orbit is one of what they reach
-        assert (((low - 1e-6 <= expected) & (expected <= high + 1e-6)) | ok).all()
-        assert ok.all() or isinstance(law, fl.LuGre)
+compiling = deep("planar kernels take long to compile")
+PLANE = in_the_plane(15.0, 4.0, 1.0, 0.5)
 
 
 def test_no_stiffness_is_too_high_or_too_low() -> None:
     speeds = np.array([5.0, 20.0, 40.0])
-    coulomb = [fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction for scene in scenes(speeds)]
+    coulomb = [
+        fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction
+        for scene in [at_resonance(speed) for speed in speeds]
+    ]
     gaps = []
     for exponent in range(-8, 3):
         law = fl.Dahl(mu=0.4, presliding_length=10.0**exponent)
-        answers = with_columns(Shooting(), scenes(speeds), law, 1e-7)
+        answers = with_columns(Shooting(), [at_resonance(speed) for speed in speeds], law, 1e-7)
         assert set(answers.status) == {"ok"}
         gaps.append(float(np.abs(answers.columns["mean_friction"] - coulomb).max()))
     assert gaps[0] < 2e-6
@@ -138,96 +92,10 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
 def test_a_motion_that_still_alternates_on_its_way_to_one_period_is_not_taken_for_two() -> None:
     """Close to doubling the multiplier is near -1: two periods ahead the motion looks the same long before it is."""
     law = fl.LuGre(mu_kinetic=0.4, presliding_length=10.0, contact_damping=2.0).under_load(10.0)
-    answers = with_columns(Shooting(), scenes(np.array([11.0]), frequency=1.5), law, 1e-6)
+    answers = with_columns(Shooting(), at_resonance(11.0, 1.5), law, 1e-6)
     assert answers.status == ["ok"]
     assert answers.columns["period"][0] == 1.0
     assert answers.columns["floquet"][0] == pytest.approx(0.99372, abs=1e-5)
-
-
-@some(2, "whole curves")
-@pytest.mark.parametrize("workload", ["W4a", "W4b", "W4c", "W4d", "W4_0.5", "W4_5e-06"])
-def test_errors_cover_along_whole_curves(workload: str) -> None:
-    """Against collocation (tests/benchmarks), known to 1e-12."""
-    curve = pd.read_csv(BENCHMARKS / f"bristle_{workload}.csv")
-    kinds = {"W4a": 5e-2, "W4b": 5e-4, "W4c": 5e-2, "W4d": 5e-4, "W4_0.5": 0.5, "W4_5e-06": 5e-6}
-    law: BristleLaw = fl.LuGre(mu_kinetic=0.4, damping=4e-4, presliding_length=kinds[workload])
-    if workload in ("W4c", "W4d"):
-        law = fl.Dahl(mu=0.4, presliding_length=kinds[workload])
-    for tolerance in (1e-5, 1e-6, 1e-7):
-        answers = with_columns(Shooting(), scenes(curve["belt_speed"].to_numpy()), law, tolerance)
-        compared(answers, curve["mean_friction"].to_numpy(), 1e-12, tolerance)
-
-
-def test_an_error_is_judged_with_the_derivative_at_the_orbit_and_not_one_of_states_passed_before() -> None:
-    drive = fl.Drive(amplitude=2.7073789880102015, frequency=1.4771137152980933, phase=30.702428808464994)
-    scene = fl.Scene(
-        damping_ratio=0.3437022511713936,
-        normal_load=26.32933412098672,
-        belt_speed=0.7346841787119447,
-        drive=drive,
-    )
-    law = fl.ElastoPlastic(
-        mu_kinetic=0.4137753901361184, stiffness=221.76349900884185, breakaway_ratio=0.6220427078927453
-    )
-    brute_force = 0.37730518566
-
-    for tolerance in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
-        state = fl.steady_state(scene, law, method="shooting", tolerance=tolerance)
-        assert abs(state.mean_friction - brute_force) <= state.error + 1e-11
-        assert state.error <= tolerance
-
-
-@pytest.mark.parametrize(
-    ("damping", "load", "speed", "amplitude", "frequency", "mu", "length"),
-    [
-        (
-            0.18151428097248495,
-            1.7353739724183828,
-            0.342558546208412,
-            18.210235200084423,
-            1.3971204210263073,
-            0.9320728078994559,
-            0.05732553871494956,
-        ),
-        (
-            0.31795923268800197,
-            0.12209010559355726,
-            0.14652891933343845,
-            14.599267991291049,
-            2.266956542623818,
-            0.9508917191521107,
-            1.2409786907162685,
-        ),
-    ],
-)
-def test_loose_tolerances_state_errors_that_cover_corners_of_friction_that_steps_miss(
-    damping: float, load: float, speed: float, amplitude: float, frequency: float, mu: float, length: float
-) -> None:
-    """Found at random, one in a thousand: two maps agreed to less than either was off."""
-    drive = fl.Drive(amplitude=amplitude, frequency=frequency)
-    scene = fl.Scene(damping_ratio=damping, normal_load=load, belt_speed=speed, drive=drive)
-    law = fl.ElastoPlastic(mu_kinetic=mu, presliding_length=length)
-    fine = fl.steady_state(scene, law, method="shooting", tolerance=1e-10)
-
-    for tolerance in (1e-3, 1e-4, 1e-5):
-        state = fl.steady_state(scene, law, method="shooting", tolerance=tolerance)
-        assert abs(state.mean_friction - fine.mean_friction) <= state.error + fine.error
-
-
-def test_friction_that_begins_within_rounding_of_its_limit_reaches_it_once() -> None:
-    drive = fl.Drive(amplitude=10.332913485240994, frequency=0.4716048960417302, phase=3.04427042833868)
-    scene = fl.Scene(
-        damping_ratio=0.019769936226340757,
-        normal_load=1.0359981415202357,
-        belt_speed=1.7300261101377998,
-        drive=drive,
-    )
-    law = fl.Jenkins(mu=0.38048274228969603, stiffness=2.316657022174747)
-
-    for tolerance in (1e-4, 6.576885527660651e-06, 1e-8):
-        state = fl.steady_state(scene, law, method="shooting", tolerance=tolerance)
-        assert state.status == "ok"
-        assert state.mean_friction == pytest.approx(0.05392415, abs=tolerance + 1e-8)  # brute force
 
 
 @deep("seconds of starts")
@@ -258,21 +126,6 @@ def test_an_orbit_that_repels_is_no_answer_of_a_body_that_may_move_across_the_be
     assert abs(state.mean_friction - -0.118131108) > 10.0 * state.error  # the mean of that orbit
 
 
-@pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 5e-7, 1e-7])
-def test_the_layer_after_a_reversal_is_not_passed_in_one_step_that_seems_exact(tolerance: float) -> None:
-    """Found at random: maps of two accuracies agreed to 3e-10, both 4e-8 off in the layer."""
-    scene = fl.Scene(
-        damping_ratio=0.2487779453056568,
-        normal_load=107.5938382561669,
-        belt_speed=28.78139268177265,
-        drive=fl.Drive(amplitude=68.96230366392348, phase=262.47097753883526, frequency=1.4455318085738338),
-    )
-    law = fl.Dahl(mu=0.21570801037813447, presliding_length=0.028157999408187733, exponent=1.9345098511021104)
-    compared(
-        with_columns(Shooting(), [scene], law, tolerance), 0.0745405342, 1e-10, tolerance
-    )  # scipy's LSODA at 1e-11
-
-
 def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
     """Beyond the vibration speed constant friction lets slip go on without reversal; contact resonance may not."""
     scene = fl.Scene(
@@ -295,11 +148,111 @@ def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
 
 
 def test_vectors_are_refused_where_they_mean_nothing() -> None:
-    drive = fl.Drive(unbalance=10.0, frequency=1.0)
-    across = fl.Transverse(natural_frequency=2.0, damping_ratio=0.1, load=fl.Load(unbalance=10.0))
-    planar = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=5.0, drive=drive, transverse=across)
+    planar = in_the_plane()
     square = fl.Dahl(mu=0.4, presliding_length=1.0, exponent=2.0)
     assert "exponent 1" in str(Shooting().refusal(planar, square))
     assert Shooting().refusal(planar, square.model_copy(update={"planar": "per-axis"})) is None
     undriven = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=5.0)
     assert Shooting().refusal(undriven, square) is None
+
+
+# --- in the plane ---
+
+
+@compiling
+def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> None:
+    gaps = []
+    for length in (1.0, 1e-2, 1e-4):
+        (answers,) = (with_columns(Shooting(), PLANE, fl.Jenkins(mu=0.4, presliding_length=length), 1e-7),)
+        assert answers.status == ["ok"]
+        orbit = answers.orbit(0)
+        assert orbit is not None
+        assert np.abs(orbit.friction).max() <= 0.4 * (1 + 1e-6)
+        coulomb = with_columns(Shooting(), [PLANE], fl.Coulomb(mu=0.4), 1e-8).columns["mean_friction"][0]
+        gaps.append(abs(answers.columns["mean_friction"][0] - coulomb))
+    assert gaps[0] > 5e-3
+    assert gaps[0] > 20 * gaps[1] > 400 * gaps[2] or gaps[2] < 1e-6
+
+
+@compiling
+def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() -> None:
+    law = fl.Dahl(mu=0.4, presliding_length=0.1)
+    planar = with_columns(Shooting(), in_the_plane(15.0, 4.0, 1.0, 0.5, unbalance=0.0), law, 1e-8)
+    alone = with_columns(Shooting(), at_resonance(15.0, 4.0, normal_load=1.0), law, 1e-8)
+    assert planar.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
+    assert "x2 decays" in planar.model[0]
+
+
+@compiling
+def test_the_two_planar_forms_are_two_laws() -> None:
+    means = {}
+    for form in ("vectorial", "per-axis"):
+        law = fl.Dahl(mu=0.4, presliding_length=3.0, planar=form)
+        answers = with_columns(Shooting(), [PLANE], law, 1e-6)
+        assert answers.status == ["ok"]
+        means[form] = float(answers.columns["mean_friction"][0])
+    coulomb = with_columns(Shooting(), [PLANE], fl.Coulomb(mu=0.4), 1e-8).columns["mean_friction"][0]
+    assert abs(means["per-axis"] - means["vectorial"]) > 1e-3
+    assert abs(means["vectorial"] - coulomb) > 1e-3
+
+
+# By axis: beside LSODA on the equations of motion, which does not know of them.
+BY_AXIS = fl.Dahl(mu=0.4, presliding_length=0.3, planar="per-axis")
+
+
+def beside(belt_speed: float, across: float = 8.0) -> fl.Scene:
+    return fl.Scene(
+        damping_ratio=0.1,
+        normal_load=4.0,
+        belt_speed=belt_speed,
+        drive=fl.Drive(amplitude=10.0, frequency=1.3, phase=30.0),
+        transverse=fl.Transverse(
+            natural_frequency=2.1, damping_ratio=0.05, load=fl.Load(amplitude=across, phase=100.0)
+        ),
+    )
+
+
+def solved(one: fl.Scene, law: BristleLaw, tolerance: float = 1e-8) -> tuple[dict[str, float], fl.Orbit]:
+    answers = with_columns(Shooting(), [one], law, tolerance)
+    orbit = answers.orbit(0)
+    assert answers.status == ["ok"]
+    assert orbit is not None
+    return {name: float(values[0]) for name, values in answers.columns.items()}, orbit
+
+
+def followed(one: fl.Scene, law: BristleLaw, state: list[float]) -> np.ndarray:
+    """The state after a period, and the integral of friction."""
+    return one_period(OnBristles(one, law, 1_000_000), np.array([*state, 0.0]), "odeint", 1e-12)
+
+
+def start_of(orbit: fl.Orbit, deflection: complex) -> list[float]:
+    x, v = complex(orbit.x[0, 0]), complex(orbit.v[0, 0])
+    return [x.real, v.real, x.imag, v.imag, deflection.real, deflection.imag]
+
+
+@pytest.mark.parametrize("belt_speed", [0.7, 4.0])
+def test_bristles_by_axis_repeat_in_the_coupled_equations_of_motion(belt_speed: float) -> None:
+    here = beside(belt_speed)
+    row, orbit = solved(here, BY_AXIS)
+    state = start_of(orbit, complex(orbit.friction[0, 0]) / BY_AXIS.bristle_stiffness)
+    end = followed(here, BY_AXIS, state)
+    assert end[:-1] == pytest.approx(state, abs=1e-6)
+    mean = -end[-1] * here.mass().frequency / (2.0 * math.pi)
+    assert abs(mean - row["mean_friction"]) <= row["error"] + 1e-9
+
+
+def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
+    law = fl.Jenkins(mu=0.4, presliding_length=2.0, planar="per-axis")
+    here = beside(2.0, across=0.5)
+    answers = with_columns(Shooting(), [here], law, 1e-8)
+    assert answers.status == ["ok"]
+    assert "elastic under this load: the mean there depends on the start" in answers.reason[0]
+    assert math.isnan(answers.columns["mean_friction_transverse"][0])
+    mass = here.mass()
+    spring = mass.transverse_stiffness + mass.normal_load * law.bristle_stiffness
+    dynamic = complex(spring - mass.frequency**2, mass.frequency * mass.transverse_damping)
+    moved = mass.frequency * abs(mass.transverse_force / dynamic)
+    assert answers.columns["transverse_velocity_amplitude"][0] == pytest.approx(moved, rel=1e-6)
+    assert answers.columns["floquet"][0] == pytest.approx(1.0, abs=1e-6)
+    alone = with_columns(Shooting(), [here.model_copy(update={"transverse": None})], law, 1e-8)
+    assert answers.columns["mean_friction"][0] == alone.columns["mean_friction"][0]

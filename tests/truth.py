@@ -31,7 +31,8 @@ Curve = list["Row"]
 class Row(NamedTuple):
     """A scene and a law as keys of a study, its mean and other columns, and how well each is known.
 
-    tolerances: asked of methods, the largest first. default: methods that the default run asks.
+    mean: NaN where the start decides. tolerances: asked of methods, the largest first. default: methods that the
+    default run asks.
     """
 
     scene: dict[str, Any]
@@ -46,8 +47,9 @@ class Row(NamedTuple):
 def law_of(keys: dict[str, Any], normal_load: float | None = None) -> Any:
     """Return the law that keys of a study tell, under a normal load where they need one."""
     kind = OF_TESTS.get(keys["kind"]) or registry.law_class(keys["kind"])
+    per_load = {"contact_damping", "contact_stiffness"} & {*keys}
     law = kind(**{name: value for name, value in keys.items() if name != "kind"})
-    return law.under_load(normal_load) if "contact_damping" in keys else law
+    return law.under_load(normal_load) if per_load else law
 
 
 @cache
@@ -63,7 +65,7 @@ def _numbers(words: str) -> tuple[float, ...]:
 
 def _told(row: dict[str, str]) -> Row:
     scene, law, also = (json.loads(row[name]) for name in ("scene", "law", "also"))
-    mean, accuracy = float(row["mean_friction"]), float(row["accuracy"])
+    mean, accuracy = float(row["mean_friction"] or "nan"), float(row["accuracy"])
     return Row(scene, law, mean, accuracy, _numbers(row["tolerances"]), also, tuple(row["default"].split()))
 
 

@@ -134,15 +134,6 @@ def test_starts_that_run_away_beside_a_steady_state_are_told() -> None:
     assert lost.reason.startswith("from scene.initial the motion runs away")
 
 
-@deep("more kernels to compile")
-def test_marching_finds_the_same() -> None:
-    scene = LINE | {"body": BENT}
-    state, marched = answered(scene), answered(scene, method="march", tolerance=1e-5)
-
-    assert marched.status == "ok"
-    assert abs(state.mean_friction - marched.mean_friction) <= state.error + marched.error
-
-
 @pytest.mark.parametrize("method", ["exact", "mdsm", "harmonic_balance"])
 def test_methods_of_linear_bodies_refuse_with_the_keys(method: str) -> None:
     state = answered(LINE | {"body": {"curvature": 0.01, "cubic_stiffness": 1}}, method=method)

@@ -77,6 +77,9 @@ def compare(told: str, curve: Curve, law: Any, method: str, tolerance: float) ->
     mean, error, full = found.mean.real, found.error, method in FULL
     for i, row in enumerate(curve):
         here, status = f"{told}, belt speed {row.scene['belt_speed']:g}: {found.reason[i]}", found.status[i]
+        if math.isnan(row.mean):
+            assert status == "not_unique" or (status == "refused" and not full), here
+            continue
         if status == "not_unique":
             low, high = found.mean_low[i], found.mean_high[i]
             assert low - 1e-6 <= row.mean <= high + 1e-6, here
@@ -96,6 +99,8 @@ def others(told: str, curve: Curve, found: object) -> None:
     for i, row in enumerate(curve):
         for name, (value, within) in row.also.items():
             own = found.columns.get(f"{name}_error")
-            slack = within + (found.error[i] if "mean" in name else 0.0 if own is None else own[i])
+            slack = within + (
+                found.error[i] if name == "mean_friction_transverse" else 0.0 if own is None else own[i]
+            )
             gap = abs(found.columns[name][i] - value)
             assert gap <= slack, f"{told}, {row.scene['belt_speed']:g}: {name} off by {gap:.1e} {slack:.1e}"

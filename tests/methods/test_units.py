@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -121,25 +120,3 @@ def test_lengths_in_orbits_and_reasons_are_those_of_the_scene() -> None:
     assert there.energy_friction == pytest.approx(factor**2 * here.energy_friction, rel=1e-6)
     told_here, told_there = (float(each.reason.split(" up to ")[1].split()[0]) for each in (here, there))
     assert told_there == pytest.approx(factor * told_here, rel=1e-2)
-
-
-@pytest.mark.parametrize("planar", [False, True])
-@pytest.mark.parametrize("load", [1e-6, 1e-11])
-@pytest.mark.parametrize(
-    "kind", [{"kind": "coulomb", "mu": 0.4, "mu_static": 0.6}, {"kind": "coulomb", "mu": 0.4}]
-)
-def test_weak_friction_acts_along_the_motion_without_it(kind: Keys, load: float, planar: bool) -> None:
-    drive = {"amplitude": 10.0, "frequency": 1.1}
-    scene: Keys = {"damping_ratio": 0.1, "normal_load": load, "belt_speed": 5.0, "drive": drive}
-    swing = 11.0 / abs(1.0 - 1.1**2 + 2j * 0.1 * 1.1)
-    expected = 0.8 / math.pi * math.asin(5.0 / swing)
-    if planar:
-        scene["transverse"] = {"natural_frequency": 1.0, "damping_ratio": 0.1, "load": {"amplitude": 10.0}}
-        slip = 1j * (11.0 / (1.0 - 1.1**2 + 2j * 0.1 * 1.1))
-        turns = np.exp(2j * math.pi * (np.arange(4096) + 0.5) / 4096)
-        along, across = (slip * turns).imag - 5.0, (slip * turns).imag
-        expected = -0.4 * float((along / np.hypot(along, across)).mean())
-    found = solved(scene, kind)
-
-    assert found.status == "ok"
-    assert abs(found.mean_friction - expected) <= found.error + load

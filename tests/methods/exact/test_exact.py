@@ -210,13 +210,6 @@ def test_a_free_start_comes_to_rest_where_coulomb_friction_leaves_it():
     assert solve(one).columns["mean_friction"][0] * 2.5 == pytest.approx(-0.7, abs=1e-11)
 
 
-def test_undamped_motion_without_reversal_keeps_its_start_but_not_its_mean():
-    answers = solve(driven(1.0, 2.0, 0.0, 0.3, 5.0))
-    assert answers.status == ["not_unique"]
-    assert answers.columns["mean_low"][0] == answers.columns["mean_high"][0] == 0.4
-    assert np.isnan(answers.columns["mean_friction"][0])
-
-
 @pytest.mark.parametrize("belt_speed", [0.0, 1.0, 30.0])
 def test_undamped_resonance_is_bounded_exactly_where_friction_reaches_pi_over_4_of_the_load(belt_speed):
     third = {"harmonics": [{"order": 1, "amplitude": 1.0}, {"order": 3, "amplitude": 0.1}]}

@@ -216,48 +216,6 @@ def test_a_law_without_a_vector_form_is_refused_in_the_plane_and_answered_on_the
 
 
 @pytest.mark.parametrize(
-    ("scene", "law", "most"),
-    [
-        (slip(0.0), Jenkins(mu=1.0, presliding_length=4.0), 0.75),
-        (slip(0.0), elasto_plastic(4.0, breakaway_ratio=0.5), 0.25),
-        (slip(0.0, 1.0, 1.0, 90.0), Jenkins(mu=1.0, presliding_length=4.0), 0.75),
-        (transverse(0.0, 3.0), Jenkins(mu=1.0, presliding_length=5.0), 0.8),
-        (slip(0.0, 0.0), dahl(1.0), 1.0),
-    ],
-)
-def test_slip_within_the_elastic_range_on_a_belt_at_rest_leaves_the_mean_to_the_start(scene, law, most):
-    answers = answer(scene, law)
-
-    assert answers.status == ["not_unique"]
-    assert answers.columns["mean_high"][0] == pytest.approx(most, abs=1e-6)
-    assert answers.columns["mean_low"][0] == -answers.columns["mean_high"][0]
-    assert math.isnan(answers.columns["mean_friction"][0])
-
-
-@pytest.mark.parametrize("phase", [0.0, 40.0, 90.0])
-def test_heat_of_an_elastic_contact_is_that_of_its_damping_whatever_the_mean(phase):
-    one = Scene(belt_speed=0.0, slip=Slip(velocity_amplitude=1.0, frequency=1.0, phase=phase))
-    answers = answer(one, elasto_plastic(4.0, breakaway_ratio=0.5, damping=0.1))
-
-    assert answers.status == ["not_unique"]
-    assert answers.columns["energy_contact"][0] == pytest.approx(0.1 * math.pi, abs=1e-8)
-    assert answers.columns["velocity_amplitude"][0] == pytest.approx(1.0, abs=1e-12)
-
-
-def test_a_belt_at_rest_drags_nothing_else():
-    for scene in (slip(0.0), transverse(0.0), circular(0.0)):
-        assert mean(scene, dahl(0.3)) == 0.0
-    assert mean(slip(0.0), Jenkins(mu=1.0, presliding_length=0.9)) == 0.0
-
-
-@pytest.mark.parametrize("softness", [0.01, 0.5, 20.0])
-def test_the_loop_of_a_belt_at_rest_turns_its_area_into_heat(softness):
-    loop = 4.0 * softness * (1.0 / softness - math.tanh(1.0 / softness))
-
-    assert answer(slip(0.0), dahl(softness)).columns["energy_contact"][0] == pytest.approx(loop, abs=1e-12)
-
-
-@pytest.mark.parametrize(
     ("scene", "law"),
     [
         (slip(0.4), dahl(0.3)),

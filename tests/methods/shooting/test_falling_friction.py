@@ -126,14 +126,6 @@ def test_where_two_states_attract_the_start_decides():
     assert row["mean_low"] <= answer["mean_friction"] <= row["mean_high"]
 
 
-def test_one_that_sticks_for_good_depends_on_where_it_stops_up_to_the_static_coefficient():
-    one = scene(0.0, drive=Drive(amplitude=2.0, frequency=0.5))
-    answers, row = solve(one, Coulomb(mu=0.3, mu_static=0.5))
-
-    assert answers.status == ["not_unique"]
-    assert row["mean_high"] == pytest.approx(0.5 - 0.2, abs=1e-6)  # static friction less the load
-
-
 @pytest.mark.parametrize("below", [0.0, 1e-15, 1e-12, 1e-9, 1e-3])
 def test_a_prescribed_slip_keeps_its_digits_where_it_only_just_reverses(below):
     # by the angle from the crest, slip is belt - V + 2 V sin^2(t/2), without a difference
@@ -169,34 +161,6 @@ def test_a_state_is_described_once_however_often_its_orbit_was_counted() -> None
 
 
 # --- a state in closed form ----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("damping", "load", "belt", "force", "frequency", "mu", "mu_static", "stick_slip"),
-    # stick-slip by own integration of events, to 1e-9; period 1 and 4
-    [
-        (0.0333, 7.5849, 2.3391, 1.1243, 0.7608, 0.4006, 0.8885, 0.3205366022),
-        (0.143, 4.89, 0.451, 0.9945, 3.6963, 0.3767, 0.7103, 0.3960067892),
-    ],
-)
-def test_smooth_sliding_beside_stick_slip_is_a_state(
-    damping: float,
-    load: float,
-    belt: float,
-    force: float,
-    frequency: float,
-    mu: float,
-    mu_static: float,
-    stick_slip: float,
-) -> None:
-    """The belt outruns the friction-free motion: about steady sliding it slips one way for ever, with the mean mu."""
-    drive = fl.Drive(amplitude=force, frequency=frequency)
-    shaken = fl.Scene(damping_ratio=damping, normal_load=load, belt_speed=belt, drive=drive)
-
-    state = fl.steady_state(shaken, fl.Coulomb(mu=mu, mu_static=mu_static))
-
-    assert state.status == "not_unique"
-    assert sorted((state.mean_low, state.mean_high)) == pytest.approx(sorted((mu, stick_slip)), abs=1e-9)
 
 
 @given(

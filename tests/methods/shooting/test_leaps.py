@@ -102,19 +102,6 @@ def test_drives_far_quicker_than_the_body_leave_no_start_behind(
     assert state.error < 1e-8
 
 
-@pytest.mark.parametrize(("damping", "frequency"), [(1e-4, 1e4), (1e-2, 1e6)])
-def test_slip_that_never_reverses_is_a_state_however_little_a_period_damps(
-    damping: float, frequency: float
-) -> None:
-    """Multipliers are exp(-2 pi damping/frequency), within 7e-8 of one."""
-    drive = fl.Drive(amplitude=0.025 * frequency, frequency=frequency)
-    scene = fl.Scene(damping_ratio=damping, normal_load=2.4, belt_speed=0.05, drive=drive)
-    state = fl.steady_state(scene, fl.Coulomb(mu=0.3, mu_static=0.6))
-
-    assert state.status == "ok"
-    assert abs(state.mean_friction - 0.3) <= state.error
-
-
 @deep("thousands of periods")
 @given(
     frequency=st.floats(1.0, 5.0).map(lambda power: 10.0**power),

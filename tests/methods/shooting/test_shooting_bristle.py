@@ -36,22 +36,6 @@ def test_no_stiffness_is_too_high_or_too_low() -> None:
     assert gaps[-1] > 0.04
 
 
-def test_a_bristle_that_never_yields_on_a_belt_at_rest_has_no_mean_of_its_own() -> None:
-    scene = fl.Scene(
-        damping_ratio=0.1, normal_load=10.0, belt_speed=0.0, drive=fl.Drive(amplitude=1.0, frequency=0.5)
-    )
-    answers = with_columns(Shooting(), [scene], fl.Jenkins(mu=0.4, presliding_length=1.0), 1e-7)
-    assert answers.status == ["not_unique"]
-    stroke = 1.0 / abs(1.0 + 4.0 - 0.25 + 0.1j)  # that of a linear body that is stiffer by the bristle
-    most = 0.4 * (1.0 - stroke)
-    assert (answers.columns["mean_low"][0], answers.columns["mean_high"][0]) == pytest.approx((-most, most))
-    assert answers.columns["velocity_amplitude"][0] == pytest.approx(0.5 * stroke, rel=1e-7)
-    assert abs(answers.columns["energy_contact"][0]) <= answers.columns["energy_contact_error"][0] < 1e-5
-    drifts = with_columns(Shooting(), [scene], fl.Dahl(mu=0.4, presliding_length=1.0), 1e-7)
-    assert drifts.status == ["ok"]
-    assert abs(drifts.columns["mean_friction"][0]) <= drifts.columns["error"][0]
-
-
 @deep("eighteen starts on stiff bristles")
 def test_a_steep_fall_on_stiff_bristles_responds_as_without_them() -> None:
     """S11: four drive periods."""
@@ -124,27 +108,6 @@ def test_an_orbit_that_repels_is_no_answer_of_a_body_that_may_move_across_the_be
     state = fl.steady_state(scene, law)
 
     assert abs(state.mean_friction - -0.118131108) > 10.0 * state.error  # the mean of that orbit
-
-
-def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
-    """Beyond the vibration speed constant friction lets slip go on without reversal; contact resonance may not."""
-    scene = fl.Scene(
-        damping_ratio=0.0348,
-        normal_load=505.75868775,
-        belt_speed=40.52301704501663,  # 1.047 times the friction-free velocity amplitude
-        drive=fl.Drive(unbalance=10.0, frequency=3.567),
-    )
-    both = with_columns(
-        Shooting(), [scene], fl.Dahl(mu=0.4, contact_stiffness=30.0).under_load(scene.normal_load), 1e-7
-    )
-    assert both.status == ["not_unique"]
-    assert both.columns["mean_high"][0] == pytest.approx(0.4, abs=1e-9)
-    assert both.columns["mean_low"][0] == pytest.approx(0.30541, abs=2e-5)  # Runge-Kutta steps, 1500 a period
-    one = with_columns(
-        Shooting(), [scene], fl.Dahl(mu=0.4, contact_stiffness=15.0).under_load(scene.normal_load), 1e-7
-    )
-    assert one.status == ["ok"]
-    assert one.columns["mean_friction"][0] == pytest.approx(0.4, abs=1e-9)
 
 
 def test_vectors_are_refused_where_they_mean_nothing() -> None:

@@ -120,16 +120,6 @@ def test_the_state_is_the_one_reached_from_the_start():
     assert "undriven sliding" in from_sliding
 
 
-def test_on_a_belt_at_rest_the_mass_stays_where_it_stops():
-    # free decay takes 2 f from every half swing: from 1.0 the mass stops on the other side, at 0.2 < f
-    status, row, deflection, model = solve(Coulomb(mu=0.4), 0.0, initial=Initial(x=1.0))
-
-    assert status == "ok"
-    assert model == "undriven rest"
-    assert deflection == pytest.approx(-0.2, abs=1e-9)
-    assert row["mean_friction"] == pytest.approx(-0.2, abs=1e-9)
-
-
 def test_a_free_oscillation_that_never_dies_has_a_multiplier_of_one():
     status, row, _, model = solve(Coulomb(mu=0.4), 0.5)
 

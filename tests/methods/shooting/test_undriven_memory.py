@@ -56,14 +56,6 @@ STAGE = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=0.01, presliding_
 ROCK = RateAndState(mu=0.6, a=0.005, b=0.01, slip_length=1e-3, reference_speed=1e-9)
 
 
-def test_on_a_belt_of_a_micrometre_a_second_bristles_end_in_steady_sliding() -> None:
-    """1 kg on 10 N/mm: the spring takes a hundred thousand periods to stretch. LSODA ends there, too."""
-    found = fl.steady_state(fl.Scene(damping_ratio=0.005, normal_load=1, belt_speed=1e-5), STAGE)
-
-    assert "undriven sliding" in found.model
-    assert found.mean_friction == pytest.approx(STAGE.sliding_friction(1e-5), abs=1e-13)
-
-
 @deep("seconds of maps a decade")
 def test_means_of_slow_belts_are_smooth_over_nine_decades() -> None:
     """A slider whose friction falls by a logarithm: neither its mean nor its period knows how slow the belt is."""

@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 831,
     "tools": 19,
     "values": 1383,
-    "tests": 27060,
+    "tests": 26971,
     "plugins": 3216,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -134,14 +134,6 @@ def test_starts_that_run_away_beside_a_steady_state_are_told() -> None:
     assert lost.reason.startswith("from scene.initial the motion runs away")
 
 
-@pytest.mark.parametrize("method", ["exact", "mdsm", "harmonic_balance"])
-def test_methods_of_linear_bodies_refuse_with_the_keys(method: str) -> None:
-    state = answered(LINE | {"body": {"curvature": 0.01, "cubic_stiffness": 1}}, method=method)
-
-    assert state.status == "refused"
-    assert f"{method} does not take body.cubic_stiffness and body.curvature" in state.reason
-
-
 @pytest.mark.parametrize("speed", [0.0, 0.5, 3.0])
 def test_an_undriven_body_slides_or_sticks_as_its_integration_says(speed: float) -> None:
     cubic, mu, load = 0.5, 0.4, 2.0

@@ -226,14 +226,3 @@ def test_a_second_harmonic_of_1e_13_changes_nothing(damping_ratio, normal_load):
     speeds, more = [0.3, 3.0, 30.0], {"damping_ratio": damping_ratio, "normal_load": normal_load}
     with_it = means(speeds, **shaped(harmonics((1, 1.0, 0.0), (2, 1e-13, 50.0)), **more))
     np.testing.assert_allclose(with_it, means(speeds, **more), atol=1e-11)
-
-
-def test_what_it_cannot_do_is_refused_with_the_way_out():
-    across = {"natural_frequency": 2.0, "damping_ratio": 0.1}
-    for changes, reason in (
-        ({"drive": {**DRIVE, "direction": 30.0}, "transverse": across}, "has a transverse load"),
-        ({"belt_vibration": {**SHAKE, "direction": 90.0}, "transverse": across}, "belt that vibrates across"),
-    ):
-        refusal = Exact().refusal(scene(3.0, **changes), LAW)
-        assert reason in refusal
-        assert "use shooting" in refusal

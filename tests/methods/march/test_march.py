@@ -279,11 +279,3 @@ def test_a_key_that_does_not_belong_is_told_beside_a_value_that_is_bad():
     assert "leave it out, stepper rk4 knows steps and periods" in told["theta"]
     assert "leave it out" in told["width"]
     assert told["steps"] == "must be >= 4, got 0"
-
-
-@pytest.mark.parametrize("stepper", ["rk4", "smoothed"])
-def test_a_stepper_that_never_rests_refuses_static_friction_of_its_own(stepper):
-    said = March(stepper=stepper).refusal(scene(1.0), Coulomb(mu=0.4, mu_static=0.6))
-    assert said is not None
-    assert "use stepper moreau" in said
-    assert March().refusal(scene(1.0), Coulomb(mu=0.4, mu_static=0.6)) is None

@@ -16,7 +16,6 @@ from strategies import sizes
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
@@ -28,7 +27,7 @@ from frictionlab.methods.march.method import March
 from frictionlab.motion.contact import advance_bristle, project_to_yield
 from frictionlab.motion.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
-from frictionlab.scene.scene import Load, Scene, Transverse
+from frictionlab.scene.scene import Scene
 
 STEPPERS = {"rk4": Rk4(), "sdirk2": Sdirk2()}
 compiling = deep("more kernels to compile")
@@ -222,30 +221,3 @@ def test_undriven_bristles_on_a_falling_curve_stick_and_slip_like_dry_friction()
     assert answers.status == ["ok"]
     assert answers.columns["period"][0] > 1.2
     assert answers.columns["velocity_amplitude"][0] > 0.1
-
-
-@pytest.mark.parametrize(
-    ("keys", "law", "said"),
-    [
-        (
-            {"stepper": "moreau"},
-            FALLING,
-            "does not support friction with memory; use rk4 or sdirk2",
-        ),
-        ({"theta": 1}, FALLING, "theta is a key of stepper moreau"),
-        ({"stepper": "rk4"}, Dahl(mu=0.4, stiffness=1.0, exponent=0.5), "needs a bound"),
-        ({"stepper": "sdirk2"}, Jenkins(mu=0.4, stiffness=1.0), "continuous rates"),
-        ({"stepper": "sdirk2"}, Coulomb(mu=0.4), "needs a bristle law; use moreau, rk4 or smoothed"),
-    ],
-)
-def test_a_stepper_of_another_kind_of_law_is_refused_with_what_to_use(keys, law, said):
-    assert said in March(**keys).refusal(scene(5.0), law)
-
-
-def test_a_law_without_a_vector_form_is_refused_in_the_plane_alone():
-    law = Dahl(mu=0.4, stiffness=1.0, exponent=2.0)
-    across = Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=10.0))
-    planar = scene(5.0, transverse=across)
-    assert law.no_vector_form() in March().refusal(planar, law)
-    assert March().refusal(planar, law.model_copy(update={"planar": "per-axis"})) is None
-    assert March().refusal(scene(5.0), law) is None

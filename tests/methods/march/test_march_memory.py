@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import pytest
 from answered import with_columns
-from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from memory_laws import elements
 from profiles import deep
 from rate_and_state import RateAndState
 
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.steppers import STEPPERS, fewest_steps
-from frictionlab.scene.scene import Drive, Scene, Slip
+from frictionlab.scene.scene import Drive, Scene
 
 compiling = deep("more kernels to compile")
 ONE = elements(stiffness=(4.0,), reach=(0.1,))
 THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
-STICKING = GeneralisedMaxwellSlip(
-    share=[2, 1], stiffness=[1, 3], mu_kinetic=0.25, mu_static=0.4, stribeck_speed=5.0, attraction=2.0
-)
 AGEING = RateAndState(mu=0.4, a=0.01, b=0.008, slip_length=2.0)
 
 
@@ -73,24 +69,3 @@ def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     assert given.status == ["refused"]
     assert "are enough" in given.reason[0]
     assert agree(solve(March(), scene, soft, 1e-3), solve(March(steps=32 * fewest), scene, soft, 1e-4))
-
-
-@pytest.mark.parametrize(
-    ("scene", "keys", "law", "said"),
-    [
-        (
-            Scene(belt_speed=1, normal_load=1, slip=Slip(velocity_amplitude=2, frequency=1)),
-            {},
-            ONE,
-            "march steps a mass, and this slip is prescribed; use shooting",
-        ),
-        (driven(1.0, drive=None, initial={"x": 1.0}), {}, ONE, "use shooting"),
-        (driven(1.0), {"stepper": "moreau"}, ONE, "use rk4"),
-        (driven(1.0), {"theta": 1}, ONE, "leave it out"),
-        (driven(1.0), {}, elements(stiffness=(1e6,), reach=(1e-6,)), "steps per period"),
-        (driven(1.0), {}, STICKING, "no stick or slip of single elements; shooting does"),
-    ],
-    ids=["prescribed", "undriven", "stepper", "theta", "stiff", "stick"],
-)
-def test_march_says_what_it_cannot_do_with_several_memories(scene, keys, law, said):
-    assert said in March(**keys).refusal(scene, law)

@@ -9,7 +9,6 @@ import pytest
 from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
-from memory_laws import elements
 from profiles import deep
 from strategies import sizes
 
@@ -139,11 +138,3 @@ def test_a_mass_that_never_slips_on_a_vibrating_belt_has_a_range_of_means():
 def pressed(contact, amplitude=0.6):
     """A changing load."""
     return {"normal_load_variation": {"amplitude": amplitude, "waveform": "sine", "contact": contact}}
-
-
-def test_laws_of_several_memories_keep_no_constant_stiffness():
-    scene = Scene(**LINE, drive=DRIVE, **pressed("constant"))
-    said = March().refusal(scene, elements(stiffness=(1.0, 3.0), reach=(0.2, 0.1)))
-    assert said is not None
-    assert "give per_load" in said
-    assert March().refusal(scene, DAHL) is None

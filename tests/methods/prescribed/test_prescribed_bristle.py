@@ -204,17 +204,6 @@ def test_per_axis_friction_along_the_belt_is_that_of_the_line():
         assert mean(slip(0.4, 1.0, 0.7, 50.0), law) == mean(slip(0.4), law)
 
 
-def test_a_law_without_a_vector_form_is_refused_in_the_plane_and_answered_on_the_line():
-    law = dahl(0.3, exponent=2.0)
-
-    assert "vector form" in Shooting().refusal(slip(0.4, 1.0, 0.7), law)
-    assert Shooting().refusal(slip(0.4), law) is None
-    assert Shooting().refusal(slip(0.4, 1.0, 0.7), dahl(0.3, exponent=2.0, planar="per-axis")) is None
-    assert "two" not in (Exact().refusal(slip(0.4), law) or "")
-    assert "use shooting" in Exact().refusal(slip(0.4, 1.0, 0.7), dahl(0.3))
-    assert "use shooting" in Exact().refusal(slip(0.4), elasto_plastic(0.3))
-
-
 @pytest.mark.parametrize(
     ("scene", "law"),
     [

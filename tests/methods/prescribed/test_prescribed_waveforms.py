@@ -238,15 +238,6 @@ def test_columns_keep_their_meaning() -> None:
     assert slower["energy_friction"][0] == pytest.approx(taken, rel=1e-12)
 
 
-def test_exact_says_what_it_cannot_do() -> None:
-    constant = {"amplitude": 0.3, "contact": "constant"}
-    assert "keep the stiffness" in (
-        Exact().refusal(scene(0.3, "square", normal_load_variation=constant), DAHL) or ""
-    )
-    assert Exact().refusal(scene(0.3, "square", normal_load_variation=constant), LAW) is None
-    assert "across the belt" in (Exact().refusal(scene(0.3, "square", slip={"direction": 30.0}), DAHL) or "")
-
-
 @given(
     stiffness=st.floats(-6, 6).map(lambda power: 10.0**power),
     exponent=st.floats(1, 3),

@@ -11,7 +11,6 @@ from answered import with_columns
 from collocation import REFERENCE
 from profiles import DEEP, some
 
-from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
@@ -282,11 +281,3 @@ def test_corner_cases_are_answered_or_fail_with_a_reason(name):
     else:
         assert answers.reason[0]
         assert np.isnan(columns["mean_friction"])
-
-
-def test_what_it_cannot_do_is_refused_with_the_way_out():
-    class Remembers(FrictionLaw):
-        def sliding_friction(self, speed):
-            return 0.4 / (1.0 + speed)
-
-    assert "a SlidingLaw, a BristleLaw or a MemoryLaw" in Shooting().refusal(scene(5.0), Remembers())

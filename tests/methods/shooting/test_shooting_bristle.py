@@ -110,15 +110,6 @@ def test_an_orbit_that_repels_is_no_answer_of_a_body_that_may_move_across_the_be
     assert abs(state.mean_friction - -0.118131108) > 10.0 * state.error  # the mean of that orbit
 
 
-def test_vectors_are_refused_where_they_mean_nothing() -> None:
-    planar = in_the_plane()
-    square = fl.Dahl(mu=0.4, presliding_length=1.0, exponent=2.0)
-    assert "exponent 1" in str(Shooting().refusal(planar, square))
-    assert Shooting().refusal(planar, square.model_copy(update={"planar": "per-axis"})) is None
-    undriven = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=5.0)
-    assert Shooting().refusal(undriven, square) is None
-
-
 # --- in the plane ---
 
 

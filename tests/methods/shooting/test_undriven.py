@@ -129,18 +129,6 @@ def test_a_free_oscillation_that_never_dies_has_a_multiplier_of_one():
     assert row["floquet"] == 1.0
 
 
-def test_a_start_across_the_belt_is_refused_without_a_drive():
-    scene = Scene(
-        damping_ratio=0.1,
-        normal_load=1.0,
-        belt_speed=0.2,
-        transverse=Transverse(natural_frequency=1.0, damping_ratio=0.1),
-        initial=Initial(x2=1.0),
-    )
-
-    assert "initial.x2" in Shooting().refusal(scene, LEINE)
-
-
 @deep("seconds of maps")
 def test_a_motion_that_creeps_for_thousands_of_periods_is_known_to_end_in_steady_sliding():
     # friction that rises steeply with slip makes the mass creep towards it, by steps of a ten-thousandth

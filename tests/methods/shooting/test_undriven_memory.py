@@ -170,13 +170,6 @@ def test_on_a_belt_at_rest_the_mass_holds_below_the_limit_and_does_not_drift(law
         assert 0.005 < found.mean_friction < 0.01
 
 
-def test_what_creeps_is_refused_on_a_belt_at_rest() -> None:
-    law = RateAndState(mu=0.4, a=0.03, b=0.05, slip_length=0.01)
-
-    assert "creeps" in str(Shooting().refusal(block(0.0, initial={"x": 0.1, "velocity": 0.0}), law))
-    assert Shooting().refusal(block(0.1, initial={"x": 0.1, "velocity": 0.0}), law) is None
-
-
 def test_a_motion_beyond_the_bound_on_work_fails_and_says_how_far_it_came(monkeypatch: Any) -> None:
     monkeypatch.setattr(undriven_path, "MOST_WORK", 3000)
 
@@ -193,13 +186,6 @@ def test_a_body_that_could_move_across_the_belt_is_answered_as_along_it() -> Non
     found = fl.steady_state(block(0.15, transverse=across), FALLING)
 
     assert found.mean_friction == fl.steady_state(block(0.15), FALLING).mean_friction
-
-
-def test_damped_bristles_that_feed_a_motion_across_are_refused() -> None:
-    law = fl.LuGre(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.2, presliding_length=0.01, damping=50.0)
-    across = fl.Transverse(natural_frequency=1.0, damping_ratio=0.1)
-
-    assert "across" in str(Shooting().refusal(block(1.0, transverse=across), law))
 
 
 def test_at_rest_in_an_unstretched_spring_there_is_no_friction_under_any_law() -> None:

@@ -24,8 +24,8 @@ LIMITS = {
     "theory": 831,
     "tools": 19,
     "values": 1383,
-    "tests": 26971,
-    "plugins": 3216,
+    "tests": 26911,
+    "plugins": 3257,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
 MOST_FILES = 329

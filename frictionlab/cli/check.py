@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -104,7 +105,7 @@ def _planned_lines(name: str, planned: Sequence[Planned], unit: ShownUnit | None
 def _price_lines(
     planned: Sequence[Sequence[Planned]], priced: Sequence[Sequence[Price]], busy: float
 ) -> list[str]:
-    """Of every study, which are run one after another. busy: how much longer than alone everything takes."""
+    """Tell the time of all studies, run one after another. busy: how much longer than alone everything takes."""
     from frictionlab.runner.price import (
         A_CURVE,
         BESIDES,
@@ -115,31 +116,25 @@ def _price_lines(
     )
     from frictionlab.runner.progress import spoken
 
-    prices = [each for of_study in priced for each in of_study]
+    kinds = list(zip(chain.from_iterable(planned), chain.from_iterable(priced), strict=True))
+    prices = [price for _, price in kinds]
     kernels = sorted(frozenset[str]().union(*(each.to_compile for each in prices)))
     solving = sum(solving_seconds(each) for each in priced)
-    compiling = busy * COMPILING * len(kernels)
     drawn = sum(min(sum(each.curves for each in entries), MOST_DRAWN) for entries in planned)
-    besides = busy * (BESIDES * len(planned) + A_CURVE * drawn)
-    points = sum(each.points for entries in planned for each in entries)
+    compiling, besides = busy * COMPILING * len(kernels), busy * (BESIDES * len(planned) + A_CURVE * drawn)
+    points = sum(entry.points for entry, _ in kinds)
     whole = "at least" if any(each.over for each in prices) else "about"
     measured = min(points, sum(each.measured for each in prices))
     how = f"{spoken(solving)} of it to solve, as measured on {measured} of {points} points"
     lines = [f"{whole} {spoken(solving + compiling + besides)} on {os.cpu_count()} cores, {how}"]
     lines += [
-        f"{entry.law} by {entry.method}: {price.over} of {price.measured} points that were tried take over "
-        f"{MOST_SECONDS:g} s"
-        for entries, each in zip(planned, priced, strict=True)
-        for entry, price in zip(entries, each, strict=True)
+        f"{entry.law} by {entry.method}: {price.over} of {price.measured} tried points take over {MOST_SECONDS:g} s"
+        for entry, price in kinds
         if price.over
     ]
     if kernels:
         names = ", ".join(each.split("_", 1)[1].rpartition("_")[0].replace("_", " ") for each in kernels)
-        lines.append(
-            f"{spoken(compiling)} of it to compile what this machine has not kept yet, once: {names}"
-        )
+        lines.append(f"{spoken(compiling)} of it to compile what is not kept here yet, once: {names}")
     if any(not each.measured for each in prices if each.to_compile):
-        lines.append(
-            "more where points take long: that is known once frictionlab warm, or a run, has compiled it"
-        )
+        lines.append("more where points take long: known once frictionlab warm, or a run, has compiled it")
     return lines

@@ -73,8 +73,7 @@ def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) ->
         tell(done, len(samples), math.nan)
         sample.solve()
     solved = [sample for sample in samples.values() if sample.measured]
-    points = sum(sample.points for sample in solved)
-    usual = sum(sample.rate * sample.points for sample in solved) / max(1, points)
+    usual = sum(one.rate * one.points for one in solved) / max(1, sum(one.points for one in solved))
     return {kind: sample.price(usual) for kind, sample in samples.items()}
 
 

@@ -182,8 +182,8 @@ def _wrapped(tau: float, period: float) -> float:
 
 
 def edges_of(corners: list[float], period: float) -> Floats:
-    """Return the ends of the pieces between corners, from 0 to the period."""
-    return np.array([0.0, *(tau for tau in corners if tau > 0.0), period])
+    """Return the ends of the pieces between corners, from 0 to the period; a rounding error long is none of them."""
+    return np.array([0.0, *(tau for tau in corners if 1e-13 < tau / period < 1.0 - 1e-13), period])
 
 
 class Signals(NamedTuple):

@@ -392,3 +392,42 @@ def test_what_else_moves_a_body_that_remembers_is_refused_by_what_to_use(method,
     assert "relay_locus" in found.reason
     assert "springs and dashpots" in found.reason or "leave transverse" in found.reason
     assert method.refusal(scene.with_(body=None), law) is None
+
+
+@pytest.mark.parametrize(
+    ("scene", "mu", "mean", "within"),
+    [
+        (
+            {
+                "damping_ratio": 0.015925416919474897,
+                "normal_load": 0.37092937800450076,
+                "belt_speed": 351.94796093585296,
+                "drive": {"amplitude": 11.209944277801783, "phase": 289.10795368454126, "frequency": 1.0},
+            },
+            0.3405713207532254,
+            0.3404324670526546,
+            1.3e-11,
+        ),
+        (
+            {
+                "damping_ratio": 0.0004859449107708178,
+                "normal_load": 0.004617677778371269,
+                "belt_speed": -0.0015781164620417988,
+                "drive": {
+                    "amplitude": 0.26988837609791855,
+                    "phase": 133.14081723669565,
+                    "frequency": 171.0242115202416,
+                },
+            },
+            0.08739892792596683,
+            -0.08729681727619454,
+            1.6e-12,
+        ),
+    ],
+)
+def test_a_rest_of_a_hundred_thousandth_of_the_period_is_no_reversal(scene, mu, mean, within):
+    """Means by Runge-Kutta steps of order 8 from event to event."""
+    found = RelayLocus().solve([fl.Scene(**scene)], fl.Coulomb(mu=mu), 1e-9)
+
+    assert found.status == ["ok"]
+    assert abs(found.mean[0].real - mean) <= found.error[0] + within

@@ -51,6 +51,15 @@ def test_the_error_covers_the_mean_of_a_sine_that_hardly_reverses(gap: float, ph
     assert abs(found.mean - closed) <= found.error
 
 
+@given(corners=st.lists(st.sampled_from([0.0, 5e-324, 1e-16, 0.25, 0.5, 1.0 - 1e-15, 1.0 - 2.0**-53])))
+def test_no_piece_is_a_rounding_error_long(corners: list[float]) -> None:
+    """``march`` stepped beyond its array in such a piece."""
+    edges = edges_of(sorted({*corners}), 1.0)
+
+    assert (edges[0], edges[-1]) == (0.0, 1.0)
+    assert np.diff(edges).min() > 0.2
+
+
 @given(form=forms)
 def test_jumps_and_opposites_are_those_of_its_values(form: Form) -> None:
     signal, tau = signal_of(form, FULL_TURN, 0.0), (np.arange(240) + 1e-9) / 240

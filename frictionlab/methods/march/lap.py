@@ -225,7 +225,7 @@ def march_piece(problem: MarchProblem, settings: MarchSettings, lap: Lap, end: f
     swing = Swing(2.0 * math.pi, length(v), 0.0 * x, 0.0)
     while tau < end and steps < settings.work:
         # The last step ends with the lap, however the sum of equal steps was rounded.
-        last = end - tau <= h * (1.0 + settings.slack)
+        last = end - tau <= h * (1.0 + settings.slack) or tau + h == tau
         begin, step = StepStart(k, tau, x, v), end - tau if last else h
         taken = advance(problem, begin, step)
         steps += 1

@@ -26,6 +26,8 @@ MOST_NEWTONS, MOST_CUTS = 16, 5
 EXTREME_HALVINGS = 50
 SLIP_SAMPLES, MOST_DIPS = 16, 6
 """Samples of a piece of slip, closer at its ends."""
+END_SAMPLES = 3
+"""Samples more at each of its ends, each four times as close as the one before."""
 FINE, NO_ROOT, VANISHED, WRONG = range(4)
 
 
@@ -135,9 +137,14 @@ def samples_of_slip(setting: LocusSetting, begun: float, length: float) -> Any:
     """Return shares of a piece of slip: closer at its ends, where slip is small, and at corners of the load."""
     of, corners = setting.response, setting.forcing.corners
     count = SLIP_SAMPLES + int(4.0 * length * of.panels / of.period)
-    shares, n = np.empty(count + corners.shape[0]), count
+    shares, n = np.empty(count + 2 * END_SAMPLES + corners.shape[0]), count
     for k in range(count):
         shares[k] = 0.5 * (1.0 - math.cos(math.pi * (k + 0.5) / count))
+    nearest = shares[0]
+    for _ in range(END_SAMPLES):  # a short rest that was taken for a reversal shows right behind it
+        nearest = 0.25 * nearest
+        shares[n], shares[n + 1] = nearest, 1.0 - nearest
+        n += 2
     for c in range(corners.shape[0]):
         since = side_lag(of, corners[c, 0] - begun, False)
         if 0.0 < since < length:

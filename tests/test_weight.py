@@ -14,7 +14,7 @@ LIMITS = {
     "compile": 1409,
     "curves": 841,
     "laws": 686,
-    "methods": 8006,
+    "methods": 8017,
     "motion": 4599,
     "report": 1772,
     "runner": 4169,

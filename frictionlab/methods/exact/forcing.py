@@ -116,12 +116,17 @@ def forcing_of(mass: Mass, coefficient: float) -> Forcing:
     # The growing response is bounded by half of the load times the time, and by as much as it was at the start.
     grown = waves[:, GROWS] * (_sizes(waves, GROWING) + presses) * (0.5 * period + 1.0)
     responses = _sizes(waves, RESPONSE) + _sizes(waves, PRESSED)
-    ramps, slopes = _reach(pieces, RAMP, 2), np.abs(pieces[:, RAMP + 1])
-    load = float((loads * turns).sum() + (_reach(pieces, PARABOLA, 3) + ramps).max())
-    arcs = (_reach(pieces, ARC, 3) + ramps + mass.damping * slopes).max()
-    swing = ((responses + grown) * turns * frequency).sum() + (_reach(pieces, ARC + 1, 2) + slopes).max()
+    smooth, parabolas, arcs, slopes = len(pieces) == 1 and not pieces[:, PARABOLA:].any(), 0.0, 0.0, 0.0
+    if not smooth:
+        ramps, rises = _reach(pieces, RAMP, 2), np.abs(pieces[:, RAMP + 1])
+        parabolas, slopes = (
+            (_reach(pieces, PARABOLA, 3) + ramps).max(),
+            (_reach(pieces, ARC + 1, 2) + rises).max(),
+        )
+        arcs = (_reach(pieces, ARC, 3) + ramps + mass.damping * rises).max()
+    load = float((loads * turns).sum() + parabolas)
+    swing = ((responses + grown) * turns * frequency).sum() + slopes
     push = (loads * frequency**3).sum() + LEAST_BEND * load / period**3
-    smooth = len(pieces) == 1 and not pieces[:, PARABOLA:].any()
     changes = bool(presses.any() or pieces[:, RAMP : RAMP + 2].any())
     steady = smooth and not waves[:, GROWS].any()
     extremes = [side * _least(waves, pieces, side, smooth) for side in (1.0, -1.0)]
@@ -153,7 +158,8 @@ def _stiffness(frequency: Floats, b: float) -> Any:
 def _waves(varying: Varying, b: float, coefficient: float) -> tuple[Floats, float]:
     """Return the rows of the waves, and the largest velocity that all of them give."""
     every = varying.load.waves, varying.belt.waves, varying.normal_load.waves
-    frequency = np.unique(np.concatenate([each.frequency for each in every]))
+    frequency = np.concatenate([each.frequency for each in every])
+    frequency = np.unique(frequency) if len(frequency) > 1 else frequency
     if len(frequency) == 0:
         return np.zeros((0, WAVE_COLUMNS)), 0.0
     load, belt, press = (_phasors(each, frequency) for each in every)
@@ -182,12 +188,17 @@ def _waves(varying: Varying, b: float, coefficient: float) -> tuple[Floats, floa
 def _phasors(waves: Waves, frequency: Floats) -> Any:
     """Return the phasors along x1 of each of these frequencies, ascending."""
     found = np.zeros(len(frequency), dtype=np.complex128)
-    np.add.at(found, np.searchsorted(frequency, waves.frequency), waves.sine.real + 1j * waves.cosine.real)
+    if len(waves.frequency):
+        np.add.at(
+            found, np.searchsorted(frequency, waves.frequency), waves.sine.real + 1j * waves.cosine.real
+        )
     return found
 
 
 def _pieces(varying: Varying, b: float, coefficient: float) -> Floats:
     edges, damping = varying.edges, 2.0 * b
+    if len(edges) == 2 and not any(each.lines.any() or each.slopes.any() for each in varying[:3]):
+        return np.array([[edges[1] if column == STOP else 0.0 for column in range(PIECE_COLUMNS)]])
     length = np.diff(edges)
     load, rise, belt, gain = (
         each.real for part in (varying.load, varying.belt) for each in (part.lines, part.slopes)

@@ -92,7 +92,7 @@ CHANGES = [
 def test_each_change_of_a_word_gives_another_digest_and_another_key_of_its_chunks() -> None:
     plans = [parse_study(study({}, scene=SCENE | change)) for change in [{}, *CHANGES]]
     keys = Keys({})
-    chunks = [[cut.chunk(task_of(plan)) for cut in cuts(plan.curves(), 125)] for plan in plans]
+    chunks = [[cut.chunk(task_of(plan)) for cut in cuts(plan.curves(), long=False)] for plan in plans]
     found = [keys.of(each, "coulomb", "auto") for several in chunks for each in several]
 
     assert None not in found

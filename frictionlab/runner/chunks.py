@@ -24,8 +24,9 @@ friction, and of all others, whose points may take seconds each.
 
 Fewer lose the continuation from the neighbour, more leave workers idle. Never made to depend on the number of
 workers: answers would, too."""
-LONG_STUDY = 20_000
-"""Points of a study long enough to keep workers busy by larger chunks; a worker is then given several together."""
+LONG_STUDY, TOGETHER = 20_000, 500
+"""Points of a study long enough to keep workers busy by larger chunks, and of those that a worker is then given at
+once."""
 
 
 @dataclass(frozen=True)

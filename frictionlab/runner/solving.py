@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.runner.chunks import QUICK, Cut, Task, cuts, is_long, task_of
+from frictionlab.runner.chunks import TOGETHER, Cut, Task, cuts, is_long, task_of
 from frictionlab.runner.execute import Solved, grouped, solve_within
 from frictionlab.runner.files import SaveError
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
@@ -111,7 +111,7 @@ class Solving:
                     yield each
 
         try:
-            force.solve(grouped(to_solve(), QUICK[True] if is_long(self.curves) else 1), self._take, tick)
+            force.solve(grouped(to_solve(), TOGETHER if is_long(self.curves) else 1), self._take, tick)
         finally:
             if self._keeping.kept is not None and not self._keeping.must_keep:
                 self._keeping.kept.trim()

@@ -130,8 +130,11 @@ class _Curve(Ledger):
 
     def solved(self) -> Answers:
         """Solve and judge."""
-        special = np.flatnonzero(self._may_have_no_single_answer())
-        settled = [i for i in special.tolist() if self._has_no_single_answer(i)]
+        undamped, jumps = self.mass.damping == 0.0, self.forcing.belt_jumps()
+        rests = (self.belt_speeds == 0.0) & (not jumps)
+        unbounded = undamped and self.forcing.unbounded()
+        special = np.flatnonzero(rests | undamped).tolist()
+        settled = [i for i in special if self._has_no_single_answer(i, bool(rests[i]), unbounded)]
         open_points = np.delete(np.arange(len(self.scenes)), settled)
         self._solve(open_points)
         if self.odd:  # on a belt at rest the orbit is its own mirror image half a period later
@@ -154,21 +157,20 @@ class _Curve(Ledger):
             orbits=lambda: self._orbits(range(len(self.scenes))),
         )
 
-    def _may_have_no_single_answer(self) -> NDArray[np.bool_]:
-        undamped, jumps = self.mass.damping == 0.0, self.forcing.belt_jumps()
-        return (self.belt_speeds == 0.0) & (not jumps) | np.full(len(self.scenes), undamped)
+    def _has_no_single_answer(self, i: int, rests: bool, unbounded: bool) -> bool:
+        """Settle the cases where the steady state depends on the start, or does not exist.
 
-    def _has_no_single_answer(self, i: int) -> bool:
-        """Settle the cases where the steady state depends on the start, or does not exist."""
+        rests: whether the belt is at rest. unbounded: whether an undamped load in resonance outdoes friction.
+        """
         forcing, speed = self.forcing, float(self.belt_speeds[i])
         # At rest the force of friction is the load less the position; of the load the mean is zero.
         low, high = forcing.table[HIGHEST] - forcing.friction, forcing.table[LOWEST] + forcing.friction
-        if speed == 0.0 and not forcing.belt_jumps() and low <= high:
+        if rests and low <= high:
             bounds = float(low / forcing.normal_load), float(high / forcing.normal_load)
             self._depends_on_start(i, bounds, _permanent_stick(*bounds))
         elif self.mass.damping == 0.0 and abs(speed) >= forcing.table[FASTEST]:
             self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
-        elif forcing.unbounded():
+        elif unbounded:
             self.fail(i, UNBOUNDED)
         else:
             return False

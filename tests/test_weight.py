@@ -25,7 +25,7 @@ LIMITS = {
     "tools": 19,
     "values": 1383,
     "tests": 26911,
-    "plugins": 3257,
+    "plugins": 3228,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
 MOST_FILES = 329

@@ -70,7 +70,7 @@ class Scene:
         return rest
 
     def slip(self, start, t0, sign):
-        """The state a time r after, and its derivative by the start."""
+        """Return the state a time r later, and its derivative by the start."""
         b, rest = self.body, self.held(sign)
         parts = b.inverse @ (start - self.steady(t0) - rest)
 

@@ -1,4 +1,4 @@
-"""The relay locus against exact on plain bodies, against motions followed in time, and in its limits."""
+"""Method relay_locus beside exact on plain bodies, beside motions followed in time, and in its limits."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from linear_bodies import curve, search
 from linear_bodies.method import UNSOLVED, RelayLocus
 from profiles import deep
 from strategies import sizes
+from truth import ROWS, law_of
 
 import frictionlab as fl
 from frictionlab import steady_state
@@ -190,7 +191,7 @@ LIMITS = {
 
 
 def closing_in(scene, made, limit, speeds, distances):
-    """How far the means of these bodies are from those of the limit, over the distance."""
+    """Return the distance of the means of these bodies to those of the limit, over that of their numbers."""
     found = [np.abs(answers(RelayLocus(), scene.with_(body=made(e)), speeds).mean - limit) for e in distances]
     return [off / e for off, e in zip(found, distances, strict=True)]
 
@@ -283,7 +284,7 @@ def test_spring_and_dashpot_that_answer_the_drive_alike_leave_another_mean(case,
 
 
 def test_what_the_load_gives_goes_to_dashpot_memory_and_friction():
-    """Of memory harmonic by harmonic; of those beyond, the velocities fall with the square of the order."""
+    """Sum the loss in memory harmonic by harmonic; beyond, velocities fall with the square of the order."""
     body = Body(
         fractional=Fractional(coefficient=0.5, order=0.4),
         relaxation=Relaxation(stiffness=0.4, time=2.0, order=0.7),
@@ -394,40 +395,11 @@ def test_what_else_moves_a_body_that_remembers_is_refused_by_what_to_use(method,
     assert method.refusal(scene.with_(body=None), law) is None
 
 
-@pytest.mark.parametrize(
-    ("scene", "mu", "mean", "within"),
-    [
-        (
-            {
-                "damping_ratio": 0.015925416919474897,
-                "normal_load": 0.37092937800450076,
-                "belt_speed": 351.94796093585296,
-                "drive": {"amplitude": 11.209944277801783, "phase": 289.10795368454126, "frequency": 1.0},
-            },
-            0.3405713207532254,
-            0.3404324670526546,
-            1.3e-11,
-        ),
-        (
-            {
-                "damping_ratio": 0.0004859449107708178,
-                "normal_load": 0.004617677778371269,
-                "belt_speed": -0.0015781164620417988,
-                "drive": {
-                    "amplitude": 0.26988837609791855,
-                    "phase": 133.14081723669565,
-                    "frequency": 171.0242115202416,
-                },
-            },
-            0.08739892792596683,
-            -0.08729681727619454,
-            1.6e-12,
-        ),
-    ],
-)
-def test_a_rest_of_a_hundred_thousandth_of_the_period_is_no_reversal(scene, mu, mean, within):
-    """Means by Runge-Kutta steps of order 8 from event to event."""
-    found = RelayLocus().solve([fl.Scene(**scene)], fl.Coulomb(mu=mu), 1e-9)
+@pytest.mark.parametrize("name", ["random sine 2", "random sine 38"])
+def test_a_rest_of_a_hundred_thousandth_of_the_period_is_no_reversal(name):
+    row = ROWS[name]
+
+    found = RelayLocus().solve([Scene(**row.scene)], law_of(row.law), 1e-9)
 
     assert found.status == ["ok"]
-    assert abs(found.mean[0].real - mean) <= found.error[0] + within
+    assert abs(found.mean[0].real - row.mean) <= found.error[0] + row.accuracy

@@ -1,4 +1,4 @@
-"""What methods refuse, and why; one that names another method is right about that."""
+"""Refusals of methods and their reasons; one that names another method is right about that."""
 
 from __future__ import annotations
 

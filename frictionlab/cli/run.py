@@ -267,7 +267,7 @@ def _how_far(result: Run) -> str:
     done = result.size - result.counts.get("killed", 0)
     kept = f" and kept in {result.folder}" if result.folder and done else ""
     told = f"interrupted: {done} of {result.size} points are done{kept}; the same command continues"
-    return f"{told}, with what was found of those under way"
+    return f"{told}, and begins those under way again"
 
 
 def _show(result: Run) -> None:

@@ -14,6 +14,7 @@ import pytest
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.motion.orbit.record import Orbit
+from frictionlab.runner import store
 from frictionlab.scene.scene import Scene
 from frictionlab.study import registry
 from frictionlab.study.registry import BrokenPlugin
@@ -83,6 +84,8 @@ def register(monkeypatch: pytest.MonkeyPatch, **fakes: type[Method]) -> None:
     known, names = registry.method_class, registry.method_names()
     monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
     monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
+    code = registry.method_code
+    monkeypatch.setattr(store, "_code_of_method", lambda name: "fake" if name in fakes else code(name))
 
 
 def faked(belt_speeds: Any, **changes: Any) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from frictionlab.bench.record import (
 )
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method, ReducedModel
-from frictionlab.runner.chunks import Chunk, Task
+from frictionlab.runner.pieces import Chunk, Task
 from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
@@ -68,7 +68,7 @@ def solve_points(
     n, along = len(scenes), Scenes.of(scenes)
     found = SolverAnswers.without("failed", "", n)
     found.more.update({name: np.full(n, np.nan) for name in more})
-    for places, answers in answer(Chunk(np.arange(n), along, law, solver, Task(tolerance))):
+    for places, answers in answer(Chunk(along, law, solver, Task(tolerance))):
         for at, place in enumerate(places):
             found.status[place], found.reason[place] = answers.status[at], answers.reason[at]
         found.means[places], found.errors[places] = answers.mean.real, answers.error

@@ -54,7 +54,7 @@ def check_command(
     """
     from frictionlab.runner import batch
     from frictionlab.runner.batch import plan
-    from frictionlab.runner.chunks import task_of
+    from frictionlab.runner.pieces import task_of
     from frictionlab.runner.price import prices
 
     jobs = at_measured(batch.jobs(study, None, overrides, law_files, plugins))

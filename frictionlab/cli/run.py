@@ -250,16 +250,15 @@ def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
 
 def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
     """Solve a share of the chunks of a study and keep them; the table is for the run that gathers them."""
-    from frictionlab.runner.kept_chunks import kept_beside
     from frictionlab.runner.solving import run_share
+    from frictionlab.runner.store import store_of
 
-    kept = kept_beside(job.out, asked.cache, asked.cache_size)
-    assert kept is not None
+    store = store_of(job.out, asked.cache, asked.cache_size, must_keep=True)
     with metered() as meter, _force(asked) as force:
-        done = run_share(job.study, part, kept, force, meter)
+        done, points = run_share(job.study, part, store, force, meter)
     print_result(
         f"{job.name}, part {part[0]} of {part[1]}: {done.computed} points solved and {done.found} found of "
-        f"{done.points}, kept in {kept.folder}"
+        f"{points}, kept in {store.folder}"
     )
 
 

@@ -20,6 +20,7 @@ from frictionlab.methods.base import Method
 from frictionlab.runner.arguments import (
     Existing,
     check_executor,
+    check_limit,
     check_ways,
     given_columns,
     given_law,
@@ -29,15 +30,15 @@ from frictionlab.runner.arguments import (
     given_study,
     given_tolerance,
 )
-from frictionlab.runner.chunks import Task
 from frictionlab.runner.files import alone_in
 from frictionlab.runner.folder import ASKED, SOLVER, Identity, RunFolder
 from frictionlab.runner.gathering import whole_table
-from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, code_digest, kept_beside
 from frictionlab.runner.more_tables import attractor_table
+from frictionlab.runner.pieces import Task
 from frictionlab.runner.progress import ProgressAsked, progress_told, silent
 from frictionlab.runner.run import Run
 from frictionlab.runner.solving import Solving
+from frictionlab.runner.store import USUAL_GIGABYTES, code_digest, store_of
 from frictionlab.runner.study_run import Interrupted, RunWays, StudyRun, UnsavedError
 from frictionlab.runner.table import without_empty
 from frictionlab.runner.workforce import Workforce, workforce
@@ -139,15 +140,16 @@ def run(
     """
     check_ways(existing, executor)
     ready = given_study(study, overrides, columns)
-    kept = kept_beside(out, cache, cache_gigabytes)
+    check_limit(ready, executor)
+    store = store_of(out, cache, cache_gigabytes)
     with progress_told(progress) as tell:
         ways = RunWays(overrides, existing, executor, tell, as_csv)
         if out is None:
-            return StudyRun(ready, None, kept, ways).run()
+            return StudyRun(ready, None, store, ways).run()
         folder = run_folder(ready, Path(out))
         with alone_in(folder.path):
             folder.check(existing)
-            return StudyRun(ready, folder, kept, ways).run()
+            return StudyRun(ready, folder, store, ways).run()
 
 
 def run_folder(study: Study, out: Path) -> RunFolder:

@@ -19,9 +19,17 @@ from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.study import registry
 from frictionlab.study.load import load_study, parse_study
-from frictionlab.study.study import Study
+from frictionlab.study.parts import LIMIT_KEY
+from frictionlab.study.study import SECONDS_PER_POINT, Study
 from frictionlab.values.columns import ALL, GROUPS, RESULTS, SI
-from frictionlab.values.notes import closest, did_you_mean, python_text, unknown_name
+from frictionlab.values.notes import (
+    Mistake,
+    StudyError,
+    closest,
+    did_you_mean,
+    python_text,
+    unknown_name,
+)
 from frictionlab.values.quantities import Floats, rebuilt
 
 Existing = Literal["reuse", "replace"]
@@ -126,6 +134,15 @@ def _checked_study(study: Study) -> Study:
         choice.law_class(**choice.parameters)
     given_columns(study.columns or (), study.scene)
     return replace(study, scene=given_scene(study.scene), tolerance=given_tolerance(study.tolerance))
+
+
+def check_limit(study: Study, executor: Executor | Workforce | None) -> None:
+    """Raise StudyError if a study limits the time of a point and threads solve it, which nobody can stop."""
+    by_threads = executor is None or (isinstance(executor, Workforce) and not executor.elsewhere)
+    if by_threads and study.seconds_per_point != SECONDS_PER_POINT:
+        name = "study" if study.path is None else str(study.path)
+        what = "needs processes: give --processes N (in Python an executor of processes), or leave limit out"
+        raise StudyError([Mistake(name, None, f"limit.{LIMIT_KEY}", what)])
 
 
 def check_ways(existing: Existing, executor: Executor | Workforce | None) -> None:

@@ -18,8 +18,9 @@ import pandas as pd
 
 from frictionlab.curves.ends import Loads, Rows, end_of_reversal, reverses
 from frictionlab.curves.level_lines import LevelLine, OfTwoNumbers, level_lines
-from frictionlab.runner.chunks import Task
 from frictionlab.runner.curve_table import curve_inputs, loads, measures
+from frictionlab.runner.packing import numbers_of, words_of
+from frictionlab.runner.pieces import Task
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.table import inputs
 from frictionlab.runner.workforce import Workforce, workforce
@@ -89,13 +90,12 @@ class _Points:
         task = Task(self._tolerance, columns=frozenset({*ALWAYS, *asked}))
         solving = Solving([each for each in curves if each.rows], task)
         solving.solve(self._force)
-        found, usable = np.full((len(Rows._fields), first), np.nan), np.zeros(first, np.bool_)
+        found = np.full((len(Rows._fields), first), np.nan)
         found[0] = np.concatenate(speeds)
-        for part in solving.parts():
-            usable[part.rows] = [status == "ok" for status in part.text["status"]]
-            for place, name in enumerate(Rows._fields[1:], 1):
-                found[place, part.rows] = part.numbers.get(name, np.nan)
-        usable &= found[0] > 0.0
+        answers = solving.answers()
+        for place, name in enumerate(Rows._fields[1:], 1):
+            found[place] = numbers_of(answers, name)
+        usable = (words_of(answers, "status") == "ok").to_numpy() & (found[0] > 0.0)
         own_rows = [slice(each.rows.start, each.rows.stop) for each in curves]
         return [Rows(*found[:, own][:, usable[own]]) for own in own_rows]
 

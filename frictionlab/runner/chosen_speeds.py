@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.runner.chunks import Task
-from frictionlab.runner.part import Part
+from frictionlab.runner.packing import numbers_of
+from frictionlab.runner.pieces import Block, Piece
 from frictionlab.runner.solving import Solving
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import CLOSEST, MOST_CHOSEN, WITHIN, SpeedRange
@@ -119,36 +120,27 @@ SHARES = (0.025, 0.05, *(0.1 * k for k in range(1, 10)))
 """Of V_lin: what the shape of a curve is read from where no more belt speeds are asked for."""
 
 
-@dataclass(frozen=True)
-class Round:
-    """The curves of a round, at the belt speeds that are new in it, and what came of them."""
+class ChosenSpeeds(NamedTuple):
+    """A study with its belt speeds, where the answers of all rounds are, and whether the last was interrupted."""
 
+    study: Study
     solving: Solving
+    stopped: bool
 
-    def moved_to(self, curves: Sequence[StudyCurve]) -> list[Part]:
-        """Its rows as those of these curves, which hold all belt speeds."""
-        rows = np.empty(self.solving.points, np.int64)
-        for each, whole in zip(self.solving.curves, curves, strict=True):
+
+def _in_one(rounds: Sequence[Solving], study: Study) -> Solving:
+    """Return the pieces of all rounds with their rows in the table of the study, which holds all belt speeds."""
+    curves, pieces = list(study.curves()), list[Piece]()
+    for one in rounds:
+        rows = np.empty(one.points, np.int64)
+        for each, whole in zip(one.curves, curves, strict=True):
             rows[each.rows.start : each.rows.stop] = whole.rows.start + np.searchsorted(
                 whole.scenes.given, each.scenes.given
             )
-        return [part.moved(rows[part.rows]) for part in self.solving.parts()]
-
-
-@dataclass(frozen=True)
-class ChosenSpeeds:
-    """A study with its belt speeds, the rounds in which they were solved, and whether the last was interrupted."""
-
-    study: Study
-    rounds: list[Round]
-    stopped: bool
-
-    def solved(self, task: Task) -> Solving:
-        """The rows of all rounds as those of the study."""
-        curves = list(self.study.curves())
-        found = Solving(curves, task, known=[part for one in self.rounds for part in one.moved_to(curves)])
-        found.rest = self.rounds[-1].solving.rest
-        return found
+        pieces += [replace(piece, rows=rows[piece.rows]) for block in one.blocks for piece in block.pieces]
+    found = Solving(curves, rounds[-1].task, rounds[-1].store, blocks=[Block(range(len(curves)), pieces)])
+    found.rest = rounds[-1].rest
+    return found
 
 
 def choose_speeds(study: Study, solve: Callable[[list[StudyCurve]], tuple[Solving, bool]]) -> ChosenSpeeds:
@@ -167,18 +159,19 @@ def choose_speeds(study: Study, solve: Callable[[list[StudyCurve]], tuple[Solvin
     ]
     named = _named(study, along)
     new = [_first(along, each, named) for each in breaks]
-    speeds, known, rounds, stopped = new, [_nothing()] * len(curves), list[Round](), False
+    speeds, known, rounds, stopped = new, [_nothing()] * len(curves), list[Solving](), False
     while any(map(len, new)) and not stopped:
         one = study.with_speeds([each.tolist() for each in new])
         curves = list(one.curves())
         solving, stopped = solve(curves)
-        rounds.append(Round(solving))
+        rounds.append(solving)
         known = [_merged(*both) for both in zip(known, _found(solving), strict=True)]
         asked = [_asked(known[at::count], breaks[at], along) for at in range(count)]
         new = [each if not stopped else np.empty(0) for each in asked]
         speeds = [np.union1d(*both) for both in zip(speeds, new, strict=True)]
         _check_size(study.with_speeds([each.tolist() for each in speeds]), along)
-    return ChosenSpeeds(study.with_speeds([each.tolist() for each in speeds]), rounds, stopped)
+    whole = study.with_speeds([each.tolist() for each in speeds])
+    return ChosenSpeeds(whole, _in_one(rounds, whole), stopped)
 
 
 def _check_size(study: Study, along: SpeedRange) -> None:
@@ -235,10 +228,8 @@ def _nothing() -> Known:
 
 
 def _found(solving: Solving) -> list[Known]:
-    means, errors = np.full((2, solving.points), np.nan)
-    for part in solving.parts():
-        for name, column in (("mean_friction", means), ("error", errors)):
-            column[part.rows] = part.numbers.get(name, np.nan)
+    answers = solving.answers()
+    means, errors = numbers_of(answers, "mean_friction"), numbers_of(answers, "error")
     rows = [slice(each.rows.start, each.rows.stop) for each in solving.curves]
     return [
         (each.scenes.given, means[own], errors[own]) for each, own in zip(solving.curves, rows, strict=True)

@@ -44,16 +44,19 @@ class NoScheduler(Exception):
     """There is no cluster to send chunks to; the message says why."""
 
 
-_TEMPORARY = re.compile(
-    r"\.(?:results\.parquet|orbits\.parquet|.+\.(?:call|chunk|csv|html|json|py|yaml))\.(?P<process>\d+)"
-)
+_TEMPORARY = re.compile(r"\.(?:.+\.(?:csv|html|json|parquet|py|yaml))\.(?P<process>\d+)")
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Beside the place, then renamed into it: a crash leaves the old file or the new one. Raises SaveError."""
+@contextlib.contextmanager
+def written_whole(path: Path) -> Iterator[Any]:
+    """Give a file to write beside the place, then rename it into that: a crash leaves the old file or the new one.
+
+    Raises SaveError.
+    """
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        temporary.write_bytes(content)
+        with temporary.open("wb") as file:
+            yield file
         os.replace(temporary, path)
     except BaseException as problem:
         with suppress(OSError):
@@ -61,6 +64,12 @@ def write_whole(path: Path, content: bytes) -> None:
         if isinstance(problem, OSError):
             raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
         raise
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all. Raises SaveError."""
+    with written_whole(path) as file:
+        file.write(content)
 
 
 def remove_leftovers(folder: Path) -> None:

@@ -7,22 +7,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import accumulate, chain, islice
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Iterable, Sequence
+from itertools import accumulate
 
 import numpy as np
 import pandas as pd
 
 from frictionlab.runner.curve_table import curve_table
 from frictionlab.runner.more_tables import harmonic_table, states_table
-from frictionlab.runner.part import KeptRows, Part, Places
-from frictionlab.runner.progress import silent
+from frictionlab.runner.pieces import Places
+from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solving import Solving
-from frictionlab.runner.table import InputColumns, Inputs, Results, orbit_rows, status_counts, without_empty
+from frictionlab.runner.table import InputColumns, kept_rows, result_frame, status_counts
 from frictionlab.runner.table_files import TableFiles
 from frictionlab.study import registry
-from frictionlab.study.grid import StudyCurve, StudyGrid
+from frictionlab.study.grid import StudyGrid
 from frictionlab.values.columns import ALWAYS, OF_SHAPE, SHOWN_IN_PART
 
 LONG_TABLE = 100_000
@@ -99,154 +98,103 @@ def thinned(pieces: Iterable[pd.DataFrame], rows: Places) -> pd.DataFrame:
     return found.table
 
 
-ROWS_TOGETHER = 20_000
-"""Rows of a piece of a long table, at least; more where those of a curve are more, or lie farther apart."""
-ROWS_AT_ONCE = 10_000
-"""Rows of it that are made a table at once."""
-
-
-class TablePiece(NamedTuple):
-    """Rows of the table that make whole curves.
-
-    kept: their orbits, harmonics and states. memories: the columns of all orbits.
-    """
-
-    inputs: Inputs
-    first: int
-    results: Results
-    kept: dict[str, KeptRows]
-    memories: Sequence[str]
-
-    def harmonics(self) -> pd.DataFrame:
-        """The kept harmonics."""
-        own = {row - self.first: found for row, found in self.kept.get("harmonics", {}).items()}
-        return harmonic_table(self.inputs, own)
-
-    def states(self) -> pd.DataFrame:
-        """The states of points that have several."""
-        own = {row - self.first: found for row, found in self.kept.get("states", {}).items()}
-        return states_table(self.inputs, own)
-
-
 class GatheredTable:
-    """A table on its way to its files.
+    """A table on its way to its files, block by block, and what is read from it meanwhile.
 
-    shown: the rows of a long one that are held; None for all rows. leave_out_empty: result columns that no row has.
+    shown: the rows of a long one that are held; None for all rows.
     """
 
-    def __init__(self, shown: Places | None, leave_out_empty: bool = False) -> None:
-        self._leave_out_empty = leave_out_empty
-        self._shown = None if shown is None else Thinned(shown)
-        self._held = pd.DataFrame()
-        self._curves: list[pd.DataFrame] = []
+    def __init__(self, shown: Places | None = None) -> None:
+        self._thinned = None if shown is None else Thinned(shown)
+        self._held = list[pd.DataFrame]()
+        self._orbits, self._harmonics = list[pd.DataFrame](), list[pd.DataFrame]()
+        self._states, self._curves = list[pd.DataFrame](), list[pd.DataFrame]()
         self._counts = Counter[str]()
-        self.orbits: pd.DataFrame | None = None
-        self.harmonics: pd.DataFrame | None = None
-        self._states: list[pd.DataFrame] = []
 
     def gather(
         self,
         solving: Solving,
         files: TableFiles,
         laws: registry.Laws,
-        stopped: bool,
-        tell: Callable[[int, int], None] = silent,
+        names: Collection[str],
+        stopped: bool = False,
+        tell: Progress = silent,
     ) -> None:
-        """Write the table, held in whole or in part. stopped: curves are not read then. tell: how far it is."""
-        none: pd.DataFrame | None = None
-        size = sum(len(each.rows) for each in solving.curves)
-        for piece in pieces(solving):
-            tell(piece.first, size)
-            for table in self._tables(piece):
-                files.add_rows(table)
-                self._counts.update(status_counts(table))
-            orbits = orbit_rows(piece.kept.get("orbits", {}), piece.memories, piece.inputs, piece.first)
-            harmonics = piece.harmonics() if solving.task.harmonics else None
-            files.add_orbits(orbits)
-            if harmonics is not None and harmonics.empty:  # columns across the belt are not told of no orbits
-                none = harmonics
+        """Write the table with these results, held in whole or in part. stopped: curves are not read then."""
+        curves, inputs = solving.curves, InputColumns(solving.curves)
+        reduced = {each.method.label for each in curves if each.method.is_reduced}
+        orbit_names = ["row", *solving.columns_of("orbits")]
+        asked = {*OF_SHAPE, *ALWAYS} & solving.task.columns
+        for block in solving.blocks:
+            first = min(curves[place].rows.start for place in block.curves)
+            tell(first, solving.points)
+            given, answers = inputs.of(block.curves), solving.answers(block)
+            table = result_frame(answers, given, names)
+            files.add_rows(table)
+            self._counts.update(status_counts(table))
+            if self._thinned is None:
+                self._held.append(table)
             else:
-                files.add_harmonics(harmonics)
-            if piece.kept.get("states"):
-                self._states.append(piece.states())
-            if self._shown is None:
-                self.orbits, self.harmonics = orbits, harmonics
-            read = piece.results.frame(piece.inputs, names={*OF_SHAPE, *ALWAYS})
-            reduced = {each.method.label for each in solving.curves if each.method.is_reduced}
-            self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws, reduced))
-        if none is not None and not files.has_harmonics:
-            files.add_harmonics(none)
+                self._thinned.add(table)
+            if solving.task.samples:
+                orbits = kept_rows(answers, "orbits", given, first)
+                in_order = [*orbit_names, *(name for name in orbits if name not in orbit_names)]
+                self._keep(self._orbits, files.add_orbits, orbits.reindex(columns=in_order))
+            if solving.task.harmonics:
+                self._keep(self._harmonics, files.add_harmonics, harmonic_table(given, answers))
+            self._states.append(states_table(given, answers))
+            read = table.iloc[:0] if stopped else result_frame(answers, given, asked)
+            self._curves.append(curve_table(read, laws, reduced))
 
-    def _tables(self, piece: TablePiece) -> Iterator[pd.DataFrame]:
-        """Its rows, so many at a time where not all are held."""
-        if self._shown is None:
-            table = piece.results.frame(piece.inputs)
-            self._held = without_empty(table) if self._leave_out_empty else table
-            yield self._held
-            return
-        for first in range(0, piece.inputs.size, ROWS_AT_ONCE):
-            table = piece.results.frame(piece.inputs, slice(first, first + ROWS_AT_ONCE))
-            self._shown.add(table)
-            yield table
+    def _keep(
+        self, held: list[pd.DataFrame], write: Callable[[pd.DataFrame], None], rows: pd.DataFrame
+    ) -> None:
+        """Write rows that are kept beside the table, and hold them where all of it is held."""
+        if len(rows):
+            write(rows)
+        if self._thinned is None:
+            held.append(rows)
 
     @property
     def table(self) -> pd.DataFrame:
-        """The rows that are held."""
-        return self._held if self._shown is None else self._shown.table
+        """Rows that are held."""
+        return _joined(self._held) if self._thinned is None else self._thinned.table
+
+    @property
+    def orbits(self) -> pd.DataFrame | None:
+        """Orbits of the rows that are held; None without any."""
+        found = _joined(self._orbits)
+        return found if len(found) else None
+
+    @property
+    def harmonics(self) -> pd.DataFrame | None:
+        """Harmonics of the rows that are held; None where none are kept."""
+        return _joined(self._harmonics) if self._harmonics else None
 
     @property
     def states(self) -> pd.DataFrame | None:
-        """Those of points that have several; None where there is no such point."""
-        return pd.concat(self._states, ignore_index=True) if self._states else None
+        """States of points that have several; None where there is no such point."""
+        found = _joined(self._states)
+        return found if len(found) else None
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many of all rows have each status, the commonest first."""
+        """Count of rows of each status, the commonest first."""
         return dict(self._counts.most_common())
 
     @property
     def curves(self) -> pd.DataFrame:
-        """The table of curves; pieces without a row say nothing about types."""
-        filled = [table for table in self._curves if len(table)] or self._curves[:1]
-        return pd.concat(filled, ignore_index=True)
+        """Table of curves."""
+        return _joined(self._curves)
 
 
-def pieces(solving: Solving) -> Iterator[TablePiece]:
-    """The table: one piece where all answers are held, else one after another."""
-    curves, found = solving.curves, solving.answers()
-    columns, memories = InputColumns(curves), _memories(solving)
-    for block in [range(len(curves))] if solving.in_memory else blocks(curves):
-        inputs, first = columns.of(block), min(curves[place].rows.start for place in block)
-        results, kept = Results(inputs.size, solving.task.columns, solving.rest), dict[str, KeptRows]()
-        parts: Iterator[Part] = chain.from_iterable(islice(found, len(block)))
-        for part in chain(solving.known, parts):
-            results.put(part, first)
-            for name, rows in part.kept.items():
-                kept.setdefault(name, {}).update(rows)
-        yield TablePiece(inputs, first, results, kept, memories)
+def _joined(tables: Sequence[pd.DataFrame]) -> pd.DataFrame:
+    """Return the rows of tables one after another; a table without a row says nothing about types."""
+    filled = [table for table in tables if len(table)] or [*tables[:1], pd.DataFrame()][:1]
+    return filled[0] if len(filled) == 1 else pd.concat(filled, ignore_index=True)
 
 
 def whole_table(solving: Solving) -> pd.DataFrame:
-    """The table of answers that are held."""
-    (piece,) = pieces(solving)
-    return piece.results.frame(piece.inputs)
-
-
-def _memories(solving: Solving) -> list[str]:
-    """The columns of memory of all laws, where orbits are kept: all rows of a file have the same."""
-    if not solving.task.samples:
-        return []
-    from frictionlab.motion.orbit.sample import memory_columns  # imports numba: only where it is needed
-
-    laws = {id(curve.given_law): curve.given_law for curve in solving.curves}.values()
-    return list(dict.fromkeys(name for law in laws for name in memory_columns(law)))
-
-
-def blocks(curves: Sequence[StudyCurve]) -> Iterator[range]:
-    """Curves one after another whose rows together are neighbours: the pieces of a table."""
-    start, low, high, rows = 0, 0, 0, 0
-    for place, curve in enumerate(curves):
-        high, rows = max(high, curve.rows[-1] + 1), rows + len(curve.rows)
-        if high - low == rows and (rows >= ROWS_TOGETHER or place == len(curves) - 1):
-            yield range(start, place + 1)
-            start, low, rows = place + 1, high, 0
+    """Return the table with every result that was asked for."""
+    given = InputColumns(solving.curves).of(range(len(solving.curves)))
+    return result_frame(solving.answers(), given, solving.task.columns)

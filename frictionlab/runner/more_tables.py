@@ -12,19 +12,20 @@ The table of harmonics: of every kept orbit velocity and friction by harmonics, 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 
 from frictionlab.methods.base import STATISTICAL, Answers, FoundState, in_own_lengths
-from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.curve_table import curve_inputs
-from frictionlab.runner.part import STATE_NUMBERS, KeptRows, beside_in_si
+from frictionlab.runner.part import STATE_NUMBERS, beside_in_si
+from frictionlab.runner.pieces import Chunk, Task
 from frictionlab.runner.solve import answer
-from frictionlab.runner.table import Inputs, inputs, scales_of_row, slice_of
+from frictionlab.runner.table import Inputs, inputs, kept_rows, scales_of_row, slice_of
 from frictionlab.runner.words import column_in_si_words
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study.grid import StudyCurve
@@ -38,7 +39,6 @@ from frictionlab.values.columns import (
     OF_STATES,
     ONSETS,
 )
-from frictionlab.values.quantities import Floats
 
 if TYPE_CHECKING:
     from frictionlab.curves.onsets import Onset
@@ -106,8 +106,8 @@ def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) 
 
 def _solved(curve: StudyCurve, tolerance: float, scenes: Scenes) -> list[tuple[Answers, int]]:
     """The answers of every scene."""
-    pieces = answer(Chunk(np.arange(len(scenes)), scenes, curve.law, curve.method.method, Task(tolerance)))
-    places = {place: (each.answers, i) for each in pieces for i, place in enumerate(each.places)}
+    found = answer(Chunk(scenes, curve.law, curve.method.method, Task(tolerance)))
+    places = {place: (each.answers, i) for each in found for i, place in enumerate(each.places)}
     return [places[i] for i in range(len(scenes))]
 
 
@@ -130,24 +130,38 @@ def attractor_table(curves: Sequence[StudyCurve], tolerance: float, starts: int)
     return pd.DataFrame(rows, columns=[*keys, *ATTRACTORS, *in_si])
 
 
-def states_table(given: Inputs, states: KeptRows) -> pd.DataFrame:
-    """Of points that have several states a row each; states: by row of the result table."""
-    keys = curve_inputs(given.columns)
-    frames = []
-    for row, columns in sorted(states.items()):
-        head = {name: given.columns[name][row] for name in keys}
-        numbers = np.arange(1, 1 + len(columns["period"]))
-        kinds = map(_error_kind, columns["error"].tolist(), columns["period"].tolist())
-        own = {
-            "belt_speed": given.columns[BELT_SPEED][row],
-            "state": numbers,
-            "error_kind": [*kinds],
-            **columns,
-        }
-        own["period"] = columns["period"].astype(int)
-        beside = beside_in_si(own, scales_of_row(given, row))
-        frames.append(pd.DataFrame(head | {name: own[name] for name in OF_STATES} | beside))
-    return pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=[*keys, *OF_STATES])
+def states_table(given: Inputs, answers: pa.Table) -> pd.DataFrame:
+    """Return a row for each state of points that have several."""
+    found = kept_rows(answers, "states", given)
+    if found.empty:
+        return pd.DataFrame(columns=[*curve_inputs(given.columns), *OF_STATES])
+    found["state"] = found.groupby("row").cumcount() + 1
+    found["error_kind"] = [*map(_error_kind, found["error"].tolist(), found["period"].tolist())]
+    found["period"] = found["period"].astype(int)
+    return _beside_inputs(given, found, OF_STATES)
+
+
+def harmonic_table(given: Inputs, answers: pa.Table) -> pd.DataFrame:
+    """Return the inputs that are equal along a curve, the belt speed, then ``HARMONICS``, in the order of the table.
+
+    Columns across the belt are left out where no orbit has them.
+    """
+    found = kept_rows(answers, "harmonics", given)
+    if len(found.columns) == 1:
+        return pd.DataFrame(columns=[*curve_inputs(given.columns), *HARMONICS])
+    found["harmonic"] = found["harmonic"].astype(int)
+    return _beside_inputs(given, found, HARMONICS)
+
+
+def _beside_inputs(given: Inputs, found: pd.DataFrame, order: Iterable[str]) -> pd.DataFrame:
+    """Return what is kept, its inputs and belt speed before it, columns in SI units last."""
+    rows = found.pop("row").to_numpy()
+    heads = {name: given.columns[name][rows] for name in curve_inputs(given.columns)}
+    speeds = pd.DataFrame({"belt_speed": given.columns[BELT_SPEED][rows]})
+    scales = {name: scale[rows] for name, scale in (given.scales or {}).items()}
+    own = pd.concat([speeds, found, pd.DataFrame(beside_in_si(speeds, scales))], axis=1)
+    names = dict.fromkeys([*(name for name in order if name in own), *own.columns])
+    return pd.DataFrame(heads | {name: own[name] for name in names})
 
 
 def _error_kind(error: float, period: float) -> str:
@@ -184,25 +198,3 @@ def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, 
         "velocity": float(state.velocity[point]),
         "found_from": state.found_from,
     }
-
-
-def harmonic_table(given: Inputs, harmonics: KeptRows) -> pd.DataFrame:
-    """The inputs that are equal along a curve, the belt speed, then ``HARMONICS``; in the order of the result table.
-
-    Columns across the belt are left out where no orbit has them.
-    """
-    keys = curve_inputs(given.columns)
-    frames = [_harmonic_rows(given, keys, row, columns) for row, columns in sorted(harmonics.items())]
-    if not frames:
-        return pd.DataFrame(columns=[*keys, *HARMONICS])
-    return pd.concat(frames, ignore_index=True)
-
-
-def _harmonic_rows(given: Inputs, keys: list[str], row: int, columns: dict[str, Floats]) -> pd.DataFrame:
-    head = {name: given.columns[name][row] for name in keys}
-    own = {
-        "belt_speed": given.columns[BELT_SPEED][row],
-        **columns,
-        "harmonic": columns["harmonic"].astype(int),
-    }
-    return pd.DataFrame(head | own | beside_in_si(own, scales_of_row(given, row)))

@@ -9,8 +9,8 @@ from pathlib import Path
 from frictionlab.runner.api import run_folder
 from frictionlab.runner.files import stamp_of_file
 from frictionlab.runner.folder import RunFolder
-from frictionlab.runner.kept_chunks import BESIDE, own_code
 from frictionlab.runner.run import Run
+from frictionlab.runner.store import BESIDE, own_code
 
 MADE_BY = "charts", "report"
 """Rooms of frictionlab that make them."""

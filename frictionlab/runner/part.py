@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, FoundState
@@ -101,9 +100,8 @@ def _ratio(above: Floats, below: Floats) -> Floats:
     return quotient
 
 
-Places = NDArray[np.int64]
 KeptRows = dict[int, dict[str, Floats]]
-"""By row of the table, columns of equal length."""
+"""By the place of a point, columns of equal length."""
 
 
 STATE_NUMBERS = {
@@ -120,7 +118,7 @@ def columns_of_states(found: Sequence[FoundState]) -> dict[str, Floats]:
     }
 
 
-class Piece(NamedTuple):
+class Answered(NamedTuple):
     """Some points of a chunk, by their place in it, and their answers."""
 
     places: list[int]
@@ -129,49 +127,31 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class Part:
-    """Rows of the table, answered: plain data, which may cross to another process.
+    """Answers of points as columns, by their places.
 
     kept: what stands beside the table, the ``states`` of points that have several, and what a study keeps, ``orbits``
     and ``harmonics``.
     """
 
-    rows: Places
     text: dict[str, list[str]]
     numbers: dict[str, Floats]
     kept: dict[str, KeptRows]
 
-    def moved(self, rows: Places) -> Part:
-        """The same answers for other rows."""
-        kept = {name: self._moved(found, rows) for name, found in self.kept.items()}
-        return replace(self, rows=rows, kept=kept)
 
-    def only(self, places: Places) -> Part:
-        """The answers at these places."""
-        text = {name: [words[place] for place in places.tolist()] for name, words in self.text.items()}
-        numbers = {name: column[places] for name, column in self.numbers.items()}
-        return Part(self.rows[places], text, numbers, self.kept)
-
-    def _moved(self, found: KeptRows, rows: Places) -> KeptRows:
-        pairs = zip(self.rows.tolist(), rows.tolist(), strict=True)
-        return {new: found[old] for old, new in pairs if old in found}
-
-
-def one_part(parts: Sequence[Part], rows: Places) -> Part:
-    """The parts as one with these rows, which are theirs in another order; NaN where a part has no number."""
-    if len(parts) == 1 and np.array_equal(parts[0].rows, rows):
-        return parts[0]
-    order = np.argsort(rows)
-    names = {name: None for part in parts for name in part.numbers}
-    numbers = {name: np.full(len(rows), np.nan) for name in names}
-    text: dict[str, list[str]] = {name: [""] * len(rows) for part in parts for name in part.text}
+def one_part(parts: Sequence[tuple[Sequence[int], Part]], size: int) -> Part:
+    """Return the parts as one, each at its places; NaN where a part has no number."""
+    if len(parts) == 1 and list(parts[0][0]) == list(range(size)):
+        return parts[0][1]
+    names = {name: None for _, part in parts for name in part.numbers}
+    numbers = {name: np.full(size, np.nan) for name in names}
+    text: dict[str, list[str]] = {name: [""] * size for _, part in parts for name in part.text}
     kept: dict[str, KeptRows] = {}
-    for part in parts:
-        places = order[np.searchsorted(rows, part.rows, sorter=order)]
+    for places, part in parts:
         for name, column in part.numbers.items():
-            numbers[name][places] = column
+            numbers[name][list(places)] = column
         for name, words in part.text.items():
-            for place, word in zip(places.tolist(), words, strict=True):
+            for place, word in zip(places, words, strict=True):
                 text[name][place] = word
         for name, found in part.kept.items():
-            kept.setdefault(name, {}).update(found)
-    return Part(rows, text, numbers, kept)
+            kept.setdefault(name, {}).update({places[at]: columns for at, columns in found.items()})
+    return Part(text, numbers, kept)

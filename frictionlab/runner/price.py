@@ -13,9 +13,9 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
-from frictionlab.runner.chunks import Chunk, Cut, Task, cuts, is_long
-from frictionlab.runner.execute import OverLimit, solve_timed, under_way, within
-from frictionlab.runner.open_chunks import OpenChunk
+from frictionlab.methods.under_way import UnderWay
+from frictionlab.runner.engine import OverLimit, solve_timed, under_way, within
+from frictionlab.runner.pieces import Chunk, Cut, Piece, Task, cuts, is_long
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.study.grid import StudyCurve
 
@@ -119,13 +119,13 @@ class _Sample:
         """
         begun = time.perf_counter()
         try:
-            took = within(MOST_SECONDS * len(chunk.rows), _time, chunk)
+            took = within(MOST_SECONDS * len(chunk), _time, chunk)
             if first:  # this call has read what others find read
                 whole = time.perf_counter() - begun
                 took = within(MOST_SECONDS, _time, chunk) if took < 0.1 * MOST_SECONDS else took
                 self._start = max(0.0, whole - took)
         except OverLimit:
-            took, self._over = MOST_SECONDS * len(chunk.rows), self._over + 1
+            took, self._over = MOST_SECONDS * len(chunk), self._over + 1
         self.spent += time.perf_counter() - begun
         return took
 
@@ -153,7 +153,7 @@ def _time(chunk: Chunk) -> float:
     from frictionlab.compile.call import compiling_nothing
 
     with compiling_nothing():
-        return solve_timed(chunk).seconds
+        return solve_timed(chunk)[1]
 
 
 GOES_ON = 0.7
@@ -165,57 +165,68 @@ PointKind = tuple[str, str]
 class Forecast:
     """Points left of each law and method, and the time that solved ones took."""
 
-    def __init__(self, points: Iterable[tuple[PointKind, int]]) -> None:
+    def __init__(self, pieces: Iterable[Piece]) -> None:
         self._left = Counter[PointKind]()
         self._solved: defaultdict[PointKind, float] = defaultdict(float)
         self._seconds: defaultdict[PointKind, float] = defaultdict(float)
-        for kind, count in points:
-            self._left[kind] += count
-        self._sent: dict[int, OpenChunk] = {}
+        for piece in pieces:
+            self._left[piece.kind] += len(piece)
+        self._sent: dict[int, tuple[Piece, Chunk]] = {}
         self._begun, self._back = time.monotonic(), 0.0
 
-    def sent(self, work: OpenChunk) -> None:
-        """Note that a chunk is sent out."""
-        self._sent[id(work.chunk)] = work
+    def sent(self, piece: Piece, chunks: Sequence[Chunk]) -> None:
+        """Note that a piece is sent out."""
+        self._sent |= {id(chunk): (piece, chunk) for chunk in chunks}
 
-    def found(self, kind: PointKind, points: int) -> None:
+    def found(self, piece: Piece) -> None:
         """Take off points that need not be solved."""
-        self._left[kind] -= points
+        self._left[piece.kind] -= len(piece)
 
-    def came_back(self, work: OpenChunk, seconds: float) -> None:
-        """Note that a chunk was solved in so many seconds."""
-        self._sent.pop(id(work.chunk), None)
-        self._left[work.kind] -= len(work.left)
+    def came_back(self, piece: Piece, seconds: float) -> None:
+        """Note that a piece was solved in so many seconds."""
+        self._sent = {key: sent for key, sent in self._sent.items() if sent[0] is not piece}
+        self._left[piece.kind] -= len(piece)
         self._back += seconds
-        self.learn(work.kind, len(work.left), seconds)
+        self._solved[piece.kind] += len(piece)
+        self._seconds[piece.kind] += seconds
 
-    def learn(self, kind: PointKind, points: int, seconds: float) -> None:
-        """Note that so many points of a kind took so long."""
-        self._solved[kind] += points
-        self._seconds[kind] += seconds
+    def _running(self) -> list[tuple[PointKind, Chunk, UnderWay]]:
+        """Return the chunks that threads of this process are solving."""
+        found = [(*self._sent[key], now) for key, now in list(under_way.items()) if key in self._sent]
+        return [(piece.kind, chunk, now) for piece, chunk, now in found]
 
     @property
     def points_under_way(self) -> int:
         """Count of points answered in chunks that have not come back."""
-        return sum(int(now.points) for key, now in list(under_way.items()) if key in self._sent)
+        return sum(int(now.points) for _, _, now in self._running())
+
+    def at(self) -> str:
+        """Tell of the chunk that has been silent for longest: its law and its belt speeds."""
+        running = self._running()
+        if not running:
+            return ""
+        (law, method), chunk, _ = min(running, key=lambda one: one[2].told_at)
+        ends = dict.fromkeys(f"{speed:.4g}" for speed in chunk.scenes.given[[0, -1]])
+        unit = "" if chunk.scenes.scene.dimensional is None else " m/s"
+        by = "" if method == "auto" else f" by {method}"
+        return f"{law}{by} at belt speed{'s' if len(ends) > 1 else ''} {' to '.join(ends)}{unit}"
 
     def seconds_left(self) -> float:
         """Return the seconds until all points are solved; NaN while nothing is known of a kind that is left."""
-        running = [(self._sent[key], now) for key, now in list(under_way.items()) if key in self._sent]
-        waiting, solved, seconds = self._left.copy(), self._solved.copy(), self._seconds.copy()
-        for work, now in running:
-            waiting[work.kind] -= len(work.left)
-            solved[work.kind] += now.points
-            seconds[work.kind] += now.seconds
+        running, waiting = self._running(), self._left.copy()
+        solved, seconds = self._solved.copy(), self._seconds.copy()
+        for kind, chunk, now in running:
+            waiting[kind] -= len(chunk)
+            solved[kind] += now.points
+            seconds[kind] += now.seconds
         rate = {kind: seconds[kind] / count for kind, count in solved.items() if count}
-        to_come = {kind for kind, count in waiting.items() if count > 0} | {work.kind for work, _ in running}
+        to_come = {kind for kind, count in waiting.items() if count > 0} | {kind for kind, _, _ in running}
         if not rate or to_come - rate.keys():
             return math.nan
         clock, rests = time.perf_counter(), [0.0]
-        for work, now in running:
+        for kind, chunk, now in running:
             silent_for = clock - now.told_at
-            known = (len(work.left) - now.points) * rate[work.kind] - silent_for
-            rests.append(max(known, GOES_ON * silent_for))
+            rests.append(max((len(chunk) - now.points) * rate[kind] - silent_for, GOES_ON * silent_for))
         total = sum(rests) + sum(waiting[kind] * rate[kind] for kind in to_come if waiting[kind] > 0)
         passed = time.monotonic() - self._begun
         at_once = len(running) or max(1.0, self._back / passed if passed > 0.0 else 1.0)

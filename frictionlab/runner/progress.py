@@ -14,7 +14,7 @@ from typing import Any, Self, TextIO
 
 from frictionlab.compile.notice import kernel_at_work
 
-Progress = Callable[[int, int, float], None]
+Progress = Callable[..., None]
 """Called now and then with the number of points done and of all points, and the seconds left, NaN where not known."""
 
 QUIET = 2.0
@@ -23,7 +23,7 @@ OFTEN, NOW_AND_THEN = 0.2, 5.0
 """Time [s] between two states of the updating line, and between two lines where none can be updated."""
 
 
-def silent(done: int, total: int, left: float = math.nan) -> None:
+def silent(done: int, total: int, left: float = math.nan, at: str = "") -> None:
     """No progress."""
 
 
@@ -59,7 +59,7 @@ class Meter:
         self._working, self._last = 0.0, time.monotonic()
         self._left: float | None = None
 
-    def __call__(self, done: int, total: int, left: float | None = None) -> None:
+    def __call__(self, done: int, total: int, left: float | None = None, at: str = "") -> None:
         """Tell how far the stage is, if it is time to; left: seconds, NaN where not known, None by the count."""
         self._left = left
         self._at_first = self._at_first if self._total else done

@@ -20,24 +20,31 @@ from frictionlab.laws.faults import (
     text_of_error,
 )
 from frictionlab.methods.base import NOT_UNIQUE, Answers, in_own_lengths, refused
-from frictionlab.runner.chunks import Chunk
-from frictionlab.runner.part import KeptRows, Part, Piece, columns_of_states, derived_columns
+from frictionlab.runner.part import (
+    Answered,
+    KeptRows,
+    Part,
+    columns_of_states,
+    derived_columns,
+    one_part,
+)
+from frictionlab.runner.pieces import Chunk
 from frictionlab.scene.scene import Scene
 from frictionlab.values.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
 from frictionlab.values.quantities import Floats
 
 
-def solve(chunk: Chunk) -> list[Part]:
+def solve(chunk: Chunk) -> Part:
     """Answer every point of a chunk. Raises BrokenPlugin; all else becomes the reason of a failed point."""
-    return parts(chunk, answer(chunk))
+    return columns_of(chunk, answer(chunk))
 
 
-def parts(chunk: Chunk, pieces: list[Piece]) -> list[Part]:
-    """Answered pieces as rows of the table."""
-    return [part for piece in pieces for part in _parts(chunk, piece)]
+def columns_of(chunk: Chunk, answered: Sequence[Answered]) -> Part:
+    """Return what was answered, all points of a chunk, as columns."""
+    return one_part([part for each in answered for part in _parts(chunk, each)], len(chunk))
 
 
-def answer(chunk: Chunk) -> list[Piece]:
+def answer(chunk: Chunk) -> list[Answered]:
     """The pieces into which refusals and failures divide a chunk. Raises BrokenPlugin."""
     places = list(range(len(chunk.scenes)))
     try:
@@ -45,29 +52,29 @@ def answer(chunk: Chunk) -> list[Piece]:
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
-        return [Piece(places, _failed(len(places), problem))]
+        return [Answered(places, _failed(len(places), problem))]
     out = {place: reason for place, reason in enumerate(reasons) if reason is not None}
-    pieces = [Piece(list(out), refused(list(out.values())))] if out else []
+    pieces = [Answered(list(out), refused(list(out.values())))] if out else []
     return pieces + _solved(chunk, [place for place in places if place not in out])
 
 
-def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
+def _solved(chunk: Chunk, places: list[int]) -> list[Answered]:
     """Solve a piece; on an arithmetic error halve it, so that a point that fails does not affect its neighbours."""
     if not places:
         return []
     scenes = chunk.scenes.taken(places)
     try:
         answers = in_own_lengths(chunk.method.solve, scenes, chunk.law, chunk.task.tolerance)
-        return [Piece(places, _believable(answers, chunk.law, len(scenes)))]
+        return [Answered(places, _believable(answers, chunk.law, len(scenes)))]
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
         if _numerical(problem) and len(places) > 1:
             return _solved_in_halves(chunk, places)
-        return [Piece(places, _failed(len(places), problem))]
+        return [Answered(places, _failed(len(places), problem))]
 
 
-def _solved_in_halves(chunk: Chunk, places: list[int]) -> list[Piece]:
+def _solved_in_halves(chunk: Chunk, places: list[int]) -> list[Answered]:
     half = len(places) // 2
     return _solved(chunk, places[:half]) + _solved(chunk, places[half:])
 
@@ -154,9 +161,9 @@ def _given(numbers: Floats | None, nothing: Floats) -> Floats:
     return nothing if numbers is None else numbers
 
 
-def _parts(chunk: Chunk, piece: Piece) -> list[Part]:
+def _parts(chunk: Chunk, piece: Answered) -> list[tuple[list[int], Part]]:
     """A piece in one; where a column of it raises an arithmetic error, its halves, solved anew."""
-    rows = chunk.rows[piece.places]
+    size = len(piece.places)
     try:
         scenes = chunk.scenes.taken(piece.places)
         asked = chunk.task.columns
@@ -167,13 +174,14 @@ def _parts(chunk: Chunk, piece: Piece) -> list[Part]:
         text = text_columns(piece.answers)
         if "floquet" in asked and piece.answers.multipliers is not None:
             text["reason"] = _noted(text["reason"], piece.answers.multipliers().reason)
-        return [Part(rows, text, numbers, _kept(chunk, piece))]
+        return [(piece.places, Part(text, numbers, _kept(chunk, piece)))]
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
-        if _numerical(problem) and len(rows) > 1:
-            return parts(chunk, _solved_in_halves(chunk, piece.places))
-        return [Part(rows, text_columns(_failed(len(rows), problem)), {}, {})]
+        if _numerical(problem) and size > 1:
+            halves = _solved_in_halves(chunk, piece.places)
+            return [part for each in halves for part in _parts(chunk, each)]
+        return [(piece.places, Part(text_columns(_failed(size, problem)), {}, {}))]
 
 
 def text_columns(answers: Answers) -> dict[str, list[str]]:
@@ -197,25 +205,23 @@ def _noted(reasons: list[str], notes: list[str]) -> list[str]:
     return ["; ".join(filter(None, both)) for both in zip(reasons, notes, strict=True)]
 
 
-def _kept(chunk: Chunk, piece: Piece) -> dict[str, KeptRows]:
+def _kept(chunk: Chunk, piece: Answered) -> dict[str, KeptRows]:
     """What stands beside the table: the states of points that have several, and the orbits that a study keeps."""
     task, answers, kept = chunk.task, piece.answers, dict[str, KeptRows]()
-    for at, place in enumerate(piece.places):
-        if answers.status[at] == "not_unique" and (states := answers.states(at)):
-            kept.setdefault("states", {})[int(chunk.rows[place])] = columns_of_states(states)
+    for at, status in enumerate(answers.status):
+        if status == "not_unique" and (states := answers.states(at)):
+            kept.setdefault("states", {})[at] = columns_of_states(states)
     if not (task.samples or task.harmonics):
         return kept
-    from frictionlab.motion.orbit.sample import (
-        harmonic_columns,  # these import numba: only where it is needed
-        sample,
-    )
+    # these import numba: only where it is needed
+    from frictionlab.motion.orbit.sample import harmonic_columns, sample
 
-    found = {place: piece.answers.orbit(at) for at, place in enumerate(piece.places)}
-    there = [(int(chunk.rows[place]), chunk.scenes[place], one) for place, one in found.items() if one]
+    found = [(at, chunk.scenes[place], answers.orbit(at)) for at, place in enumerate(piece.places)]
+    there = [(at, scene, one) for at, scene, one in found if one]
     if task.samples:
         kept["orbits"] = {
-            row: sample(one, scene, chunk.law, task.samples).columns() for row, scene, one in there
+            at: sample(one, scene, chunk.law, task.samples).columns() for at, scene, one in there
         }
     if task.harmonics:
-        kept["harmonics"] = {row: harmonic_columns(scene, one, task.harmonics) for row, scene, one in there}
+        kept["harmonics"] = {at: harmonic_columns(scene, one, task.harmonics) for at, scene, one in there}
     return kept

@@ -10,10 +10,10 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
-from frictionlab.runner.chunks import Chunk, Task
-from frictionlab.runner.execute import within
-from frictionlab.runner.part import Part, one_part, si_columns, si_scales
-from frictionlab.runner.solve import answer, parts, solve
+from frictionlab.runner.engine import within
+from frictionlab.runner.part import Part, si_columns, si_scales
+from frictionlab.runner.pieces import Chunk, Task
+from frictionlab.runner.solve import answer, columns_of, solve
 from frictionlab.runner.state import OrbitOf, SteadyState
 from frictionlab.runner.words import in_si_words
 from frictionlab.scene.scene import Scene
@@ -64,13 +64,13 @@ def steady_state(
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     task = Task(given_tolerance(tolerance), columns=selected([ALL]))
-    chunk = Chunk(np.zeros(1, np.int64), Scenes.of([scene]), law_in_scene(law, scene), ready, task)
-    (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
-    (part,) = within(inf, parts, chunk, [piece])
+    chunk = Chunk(Scenes.of([scene]), law_in_scene(law, scene), ready, task)
+    (found,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
+    part = within(inf, columns_of, chunk, [found])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     scales = {} if scene.dimensional is None else si_scales(scene)
     words = {name: in_si_words(column[0], scales) for name, column in part.text.items()}
-    motion = OrbitOf(piece.answers.orbit, scene, chunk.law)
+    motion = OrbitOf(found.answers.orbit, scene, chunk.law)
     return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
 
 
@@ -80,8 +80,8 @@ def steady_states(scenes: Scenes, law: FrictionLaw, tolerance: float, columns: S
     Raises BrokenPlugin.
     """
     task = Task(tolerance, columns=selected(columns))
-    chunk = Chunk(np.arange(len(scenes)), scenes, law_in_scene(law, scenes.scene), given_method("auto"), task)
-    return one_part(solve(chunk), chunk.rows)
+    chunk = Chunk(scenes, law_in_scene(law, scenes.scene), given_method("auto"), task)
+    return solve(chunk)
 
 
 def _in_si(part: Part, scene: Scene) -> dict[str, float]:

@@ -14,24 +14,23 @@ import pandas as pd
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.boundaries import boundary_table
 from frictionlab.runner.chosen_speeds import choose_speeds
-from frictionlab.runner.chunks import task_of
 from frictionlab.runner.expectations import Verdict, judge
 from frictionlab.runner.files import SaveError
-from frictionlab.runner.folder import ASKED, RunFolder
+from frictionlab.runner.folder import RunFolder
 from frictionlab.runner.gathering import LONG_TABLE, GatheredTable, shown_rows, thinned
-from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.more_tables import READ_FOR_ONSETS, attractor_table, onset_table
-from frictionlab.runner.part import Part
+from frictionlab.runner.pieces import task_of
 from frictionlab.runner.progress import Meter, Progress, silent
 from frictionlab.runner.run import Run
-from frictionlab.runner.solving import Keeping, Solving
-from frictionlab.runner.table import finished_part, inputs, kept_rows, whole
+from frictionlab.runner.solving import Solving
+from frictionlab.runner.store import Store
+from frictionlab.runner.table import whole
 from frictionlab.runner.table_files import TableFiles, read_columns_of_file, read_pieces, read_whole
 from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.study import registry
 from frictionlab.study.grid import StudyCurve, grid_size
 from frictionlab.study.study import Study
-from frictionlab.values.columns import ALWAYS, INPUTS, RESULTS
+from frictionlab.values.columns import ALWAYS, INPUTS
 
 
 class Interrupted(KeyboardInterrupt):
@@ -61,12 +60,10 @@ class RunWays(NamedTuple):
 
 
 class StudyRun:
-    """One run of a study. folder: where its results go; kept: where its chunks are; None for nowhere."""
+    """One run of a study. folder: where its results go, None for nowhere; store: where its pieces are."""
 
-    def __init__(
-        self, study: Study, folder: RunFolder | None, kept: KeptChunks | None, ways: RunWays
-    ) -> None:
-        self.study, self.folder, self.kept, self.ways = study, folder, kept, ways
+    def __init__(self, study: Study, folder: RunFolder | None, store: Store, ways: RunWays) -> None:
+        self.study, self.folder, self.store, self.ways = study, folder, store, ways
         self._started, self._clock = datetime.now(UTC), time.monotonic()
         self._earlier_runs: list[dict[str, Any]] = []
         self._points = self._computed = self._found = 0
@@ -78,15 +75,11 @@ class StudyRun:
             self._earlier_runs = self.folder.previous_runs()
             if self._is_there():
                 return self._taken_over()
-        earlier, attractors = self._earlier_table(), self._earlier_attractors()
         if self.folder is not None:
             self.folder.open(self.ways.existing)
             self._describe({}, ())
-        self._keys = Keys(self.study.code, "" if self.folder is None else self.folder.unknown_code)
-        solving, stopped = self._solved(earlier)
-        self._is_idle = bool(self._earlier_runs) and not self._computed and not self._found and not stopped
-        done = self._gathered(solving, stopped)
-        return self._with_attractors(done, None if self._computed else attractors)
+        solving, stopped = self._solved()
+        return self._with_attractors(self._gathered(solving, stopped), solving)
 
     # --- what an earlier run left -----------------------------------------------------------------------------------
 
@@ -124,53 +117,24 @@ class StudyRun:
         self._describe(done.counts, done.verdicts, done=True)
         return done
 
-    def _earlier_table(self) -> pd.DataFrame | None:
-        """The rows that an earlier run found, not those of a long run."""
-        if self.folder is None or self._is_long or self.study.keep_harmonics is not None:
-            return None
-        return self.folder.earlier(self.ways.existing)
-
-    def _earlier_attractors(self) -> pd.DataFrame | None:
-        if self.folder is None or self.study.keep_attractors is None:
-            return None
-        return self.folder.earlier_text(self.folder.attractors_file, self.ways.existing)
-
-    def _known(self, curves: Sequence[StudyCurve], earlier: pd.DataFrame | None) -> list[Part]:
-        """Rows of these curves that are in an earlier table, with their orbits."""
-        given, wanted = inputs(curves), self.study.selected()
-        names = {*given.columns, *(name for name in RESULTS if name in wanted)}
-        if earlier is None or self.folder is None:
-            return []
-        if earlier.attrs.get(ASKED) == self.folder.identity.marks[ASKED]:  # what it lacks no row has
-            earlier = whole(earlier)
-        if not names <= {*earlier.columns}:
-            return []
-        if self.study.keep_orbit is None:
-            return [finished_part(given, earlier, wanted)]
-        orbits = self.folder.earlier_orbits(self.ways.existing)
-        if orbits is None or not (orbits.groupby("row").size() == self.study.keep_orbit).all():
-            return []
-        return [finished_part(given, earlier, wanted, kept_rows(orbits))]
-
     # --- solving ----------------------------------------------------------------------------------------------------
 
-    def _solved(self, earlier: pd.DataFrame | None) -> tuple[Solving, bool]:
-        """All that could be solved, and whether that was interrupted; belt speeds are chosen as it goes."""
+    def _solved(self) -> tuple[Solving, bool]:
+        """Solve all that can be solved; return True where that was interrupted. Belt speeds are chosen as it goes."""
         if self.study.chosen_range is None:
-            return self._solve(list(self.study.curves()), earlier)
-        chosen = choose_speeds(self.study, lambda curves: self._solve(curves, earlier))
-        self.study = chosen.study
-        return chosen.solved(task_of(self.study)), chosen.stopped
+            return self._solve(list(self.study.curves()))
+        self.study, solving, stopped = choose_speeds(self.study, self._solve)
+        return solving, stopped
 
-    def _solve(self, curves: list[StudyCurve], earlier: pd.DataFrame | None) -> tuple[Solving, bool]:
-        keeping = Keeping(self.kept, self._keys, not self._is_long)
-        solving = Solving(curves, task_of(self.study), keeping, self._known(curves, earlier))
+    def _solve(self, curves: list[StudyCurve]) -> tuple[Solving, bool]:
         before, tell = self._points, self.ways.progress
-        self._points += solving.points
         with workforce(self.ways.executor) as force:
+            task = task_of(self.study, limited=force.elsewhere)
+            solving = Solving(curves, task, self.store, self.study.code)
+            self._points += solving.points
             stopped = solving.solve_or_say_why_not(
                 force,
-                (silent if tell is silent else lambda done, of, left: tell(before + done, before + of, left)),
+                silent if tell is silent else lambda done, of, *how: tell(before + done, before + of, *how),
             )
         self._computed += solving.computed
         self._found += solving.found
@@ -180,13 +144,13 @@ class StudyRun:
 
     def _gathered(self, solving: Solving, stopped: bool) -> Run:
         """The run, written and judged. Raises Interrupted or UnsavedError, both with the run."""
-        usual = self.study.columns is None
-        gathered = GatheredTable(shown_rows(self.study) if self._is_long else None, usual)
-        done, unsaved = None, None
+        names = solving.columns() if self.study.columns is None else solving.task.columns
+        gathered = GatheredTable(shown_rows(self.study) if self._is_long else None)
+        unsaved = None
         try:
-            with TableFiles(self.folder, self._as_csv, usual and self._is_long) as files:
+            with TableFiles(self.folder, self._as_csv) as files:
                 tell = silent if stopped else self._next_stage("gathering", "points")
-                gathered.gather(solving, files, self._laws, stopped, tell)
+                gathered.gather(solving, files, self._laws, names, stopped, tell)
             if self.folder is not None and not gathered.curves.empty:
                 self.folder.save_text(self.folder.curves_file, gathered.curves)
         except SaveError as problem:
@@ -286,15 +250,18 @@ class StudyRun:
             {"counts": counts, "expect": [asdict(each) for each in verdicts], "runs": runs}, done
         )
 
-    def _with_attractors(self, done: Run, found: pd.DataFrame | None) -> Run:
+    def _with_attractors(self, done: Run, solving: Solving) -> Run:
         """The run with its attractors, where the study keeps them, or some points have several.
 
         Raises Interrupted, UnsavedError.
         """
-        starts, table = done.study.keep_attractors, done.attractors if found is None else found
+        starts, table = done.study.keep_attractors, done.attractors
         try:
-            if starts is not None and found is None:
-                table = attractor_table(list(done.study.curves()), done.study.tolerance, starts)
+            if starts is not None:
+                table = self.store.derived(
+                    solving.key("attractors", starts),
+                    lambda: attractor_table(solving.curves, done.study.tolerance, starts),
+                )
         except KeyboardInterrupt:
             raise Interrupted(done) from None
         if table is None:

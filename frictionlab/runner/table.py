@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.runner.part import KeptRows, Part, beside_in_si, si_columns, si_scales
+from frictionlab.runner.packing import WORDS, kept_of, numbers_of, words_of
+from frictionlab.runner.part import beside_in_si, si_columns, si_scales
 from frictionlab.runner.words import column_in_si_words
 from frictionlab.scene.units import scaled_parameters
 from frictionlab.study.grid import StudyCurve
@@ -27,8 +29,6 @@ from frictionlab.values.columns import (
     leading,
 )
 from frictionlab.values.quantities import Floats
-
-FINISHED = ("ok", "refused", "failed", "not_unique")
 
 
 class Inputs(NamedTuple):
@@ -149,51 +149,23 @@ def value_in(cells: Mapping[str, Any], name: str) -> Any:
     return filled[name] if name in filled else [*filled.values()] or None
 
 
-EVERY_ROW = slice(None)
+def result_frame(answers: pa.Table, given: Inputs, names: Collection[str]) -> pd.DataFrame:
+    """Return the table of some rows: inputs, then these results in the order of the contract, those in SI units too.
 
-
-class Results:
-    """The result columns of a run, filled as its parts come in; what has not come in is ``killed``."""
-
-    def __init__(self, size: int, columns: frozenset[str], rest: str = "not finished") -> None:
-        """rest: why what does not come in is missing."""
-        self._columns = columns
-        self._words = {name: np.full(size, "", dtype=object) for name in TEXT}
-        self._words["status"][:] = "killed"
-        self._words["reason"][:] = rest
-        names = [name for name in RESULTS if name not in TEXT and name in columns]
-        self._numbers: dict[str, Floats] = {name: np.full(size, np.nan) for name in names}
-
-    def put(self, part: Part, first: int = 0) -> None:
-        """Fill the rows of a part, the first here being this one. Raises KeyError for a column not asked for."""
-        rows = part.rows - first
-        for name, words in part.text.items():
-            self._words[name][rows] = words
-        for name, numbers in part.numbers.items():
-            self._numbers[name][rows] = numbers
-
-    def frame(
-        self, given: Inputs, rows: slice = EVERY_ROW, names: Collection[str] | None = None
-    ) -> pd.DataFrame:
-        """The table: contract order, empty cells where a column does not apply.
-
-        rows, names: of these rows alone, of the results these columns alone.
-        """
-        told = [name for name in RESULTS if name in self._columns and (names is None or name in names)]
-        found = {name: self._words.get(name, self._numbers.get(name)) for name in told}
-        in_si = si_columns(self._numbers, given.scales) if given.scales is not None and names is None else {}
-        columns = given.columns | found | in_si
-        shown = {name: column[rows] for name, column in columns.items() if column is not None}
-        if given.scales is not None:
-            scales = {name: values[rows] for name, values in given.scales.items()}
-            if "reason" in shown and names is None:
-                shown["reason"] = np.array(column_in_si_words(shown["reason"], scales), dtype=object)
-        frame = pd.DataFrame(shown, copy=False)
-        for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
-            if name in given.columns and frame[name].isna().all():
-                continue  # words of other rows
+    Cells are empty where a column does not apply.
+    """
+    told = [name for name in RESULTS if name in names]
+    found = {name: words_of(answers, name) if name in TEXT else numbers_of(answers, name) for name in told}
+    if given.scales is not None:
+        numbers = {name: column for name, column in found.items() if name not in TEXT}
+        found |= si_columns(numbers, given.scales)
+        if "reason" in found:
+            found["reason"] = pd.Series(column_in_si_words(found["reason"], given.scales), dtype=WORDS)
+    frame = pd.DataFrame(given.columns | found, copy=False)
+    for name in [name for name in given.columns if frame[name].dtype.kind == "O"]:
+        if not frame[name].isna().all():  # else words of other rows
             frame[name] = _column_of_words_or_numbers(frame[name])
-        return frame
+    return frame
 
 
 def without_empty(table: pd.DataFrame) -> pd.DataFrame:
@@ -219,17 +191,14 @@ def whole(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _nothing(name: str, index: pd.Index) -> pd.Series:
-    return pd.Series(np.nan, index, _WORDS if name in TEXT else float)
-
-
-_WORDS = pd.StringDtype(na_value=np.nan)
+    return pd.Series(np.nan, index, WORDS if name in TEXT else float)
 
 
 def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
     """Numbers with gaps as floats; words as strings, the empty word as a gap."""
     if all(value is None or isinstance(value, float | int) for value in column):
         return column.astype(float)
-    return column.where(column != "", None).astype(_WORDS)
+    return column.where(column != "", None).astype(WORDS)
 
 
 def status_counts(table: pd.DataFrame) -> dict[str, int]:
@@ -251,29 +220,6 @@ def swept_inputs(table: pd.DataFrame) -> list[str]:
     return [name for name in apart if name != speed]
 
 
-def finished_part(
-    given: Inputs, earlier: pd.DataFrame, wanted: Collection[str], orbits: KeptRows | None = None
-) -> Part:
-    """The rows of this run that an earlier table has finished, with these columns and their orbits."""
-    done = earlier[earlier["status"].isin(FINISHED)]
-    done = done[done["status"] != "not_unique"]  # the table does not tell their states
-    names = list(given.columns)
-    places = {key: place for place, key in enumerate(_keys(done[name].tolist() for name in names))}
-    keys = _keys(given.columns[name].tolist() for name in names)
-    found = {row: places[key] for row, key in enumerate(keys) if key in places}
-    table = done.iloc[list(found.values())]
-    text = {name: table[name].fillna("").tolist() for name in TEXT if name in wanted}
-    numbers = {name: table[name].to_numpy(float) for name in RESULTS if name in wanted and name not in TEXT}
-    pairs = zip(found, table.index.tolist(), strict=True)
-    kept = {row: orbits[there] for row, there in pairs if there in orbits} if orbits else {}
-    return Part(np.array([*found], dtype=np.int64), text, numbers, {"orbits": kept})
-
-
-def _keys(columns: Iterable[list[Any]]) -> Iterable[Hashable]:
-    """The cells of each row, None for NaN."""
-    return zip(*([None if value != value else value for value in column] for column in columns), strict=True)
-
-
 def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
     """One plain record per row for JSON, None for an empty cell."""
     columns = {name: [_plain(value) for value in frame[name].tolist()] for name in frame.columns}
@@ -285,32 +231,19 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def orbit_rows(
-    orbits: KeptRows, memories: Sequence[str] = (), given: Inputs | None = None, first: int = 0
-) -> pd.DataFrame | None:
-    """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any.
+def kept_rows(answers: pa.Table, kind: str, given: Inputs, first: int = 0) -> pd.DataFrame:
+    """Return what is kept beside rows, of scenes in SI units with columns in these, too; may be empty.
 
-    memories: columns of memory to be there whether or not one of these laws remembers so much; NaN where none does.
-    given: of the table from its row ``first`` on; scenes given in SI units have columns in them.
+    ``row`` is the point's place in the table, which begins with the row ``first``.
     """
-    frames = [
-        pd.DataFrame({"row": row, **samples, **beside_in_si(samples, scales_of_row(given, row - first))})
-        for row, samples in sorted(orbits.items())
-    ]
-    if not frames:
-        return None
-    rows = pd.concat(frames, ignore_index=True)
-    return rows.reindex(columns=list(dict.fromkeys([*rows.columns, *memories])))
+    found = kept_of(answers, kind)
+    places = found["row"].to_numpy()
+    scales = {name: scale[places] for name, scale in (given.scales or {}).items()}
+    own = {name: found[name].to_numpy() for name in found.columns if name != "row"}
+    return pd.DataFrame({"row": places + first} | own | beside_in_si(own, scales))
 
 
 def scales_of_row(given: Inputs | None, row: int) -> dict[str, float]:
-    """The units in which results of a row are counted in SI units; none where its scene is not given in them."""
+    """Return the SI units of the results of a row; none where its scene is not given in them."""
     found = {} if given is None or given.scales is None else given.scales
     return {name: float(scales[row]) for name, scales in found.items()}
-
-
-def kept_rows(orbits: pd.DataFrame) -> KeptRows:
-    """What ``orbit_rows`` made a table of."""
-    columns = [name for name in orbits if name != "row"]
-    groups = orbits.groupby("row", sort=True)
-    return {int(row): {name: own[name].to_numpy() for name in columns} for row, own in groups}

@@ -16,7 +16,6 @@ import pyarrow.parquet as pq
 from frictionlab.runner.csv_text import as_csv
 from frictionlab.runner.files import SaveError
 from frictionlab.runner.folder import RunFolder
-from frictionlab.runner.table import may_be_left_out
 
 ROWS_OF_TEXT = 10_000
 """Rows whose text is held at once."""
@@ -25,12 +24,12 @@ ROWS_OF_TEXT = 10_000
 class TableFiles:
     """results.parquet, results.csv, orbits.parquet and harmonics.csv of a run while they are written.
 
-    folder: None where nothing is. as_csv: whether the table is wanted as text, too. leave_out_empty: result columns
-    that no row has. Once a file cannot be written none is, and the end of ``with`` raises SaveError.
+    folder: None where nothing is. as_csv: whether the table is wanted as text, too. Once a file cannot be written
+    none is, and the end of ``with`` raises SaveError.
     """
 
-    def __init__(self, folder: RunFolder | None, as_csv: bool = True, leave_out_empty: bool = False) -> None:
-        self._folder, self._as_csv, self._leave_out_empty = folder, as_csv, leave_out_empty
+    def __init__(self, folder: RunFolder | None, as_csv: bool = True) -> None:
+        self._folder, self._as_csv = folder, as_csv
         self._open: dict[Path, Any] = {}
         self._begun: dict[Path, Path] = {}
         self._files: list[Any] = []
@@ -45,7 +44,7 @@ class TableFiles:
         """The next rows of the table."""
         if self._folder is not None:
             self._add(self._folder.table, table, self._add_parquet)
-        if self._folder is not None and self._as_csv and not self._leave_out_empty:
+        if self._folder is not None and self._as_csv:
             self._add(self._folder.csv_file, table, self._add_text)
 
     def add_orbits(self, orbits: pd.DataFrame | None) -> None:
@@ -57,11 +56,6 @@ class TableFiles:
         """The next rows of the harmonics, where they are kept."""
         if self._folder is not None and harmonics is not None:
             self._add(self._folder.harmonics_file, harmonics, self._add_text)
-
-    @property
-    def has_harmonics(self) -> bool:
-        """Whether any were added."""
-        return self._folder is not None and self._folder.harmonics_file in self._open
 
     def _add(self, path: Path, table: pd.DataFrame, write: Callable[[Path, pd.DataFrame], None]) -> None:
         if self._problem is not None:
@@ -108,8 +102,6 @@ class TableFiles:
                 file.close()
             except OSError as full:
                 self._problem = self._problem or SaveError(f"cannot write the table: {full.strerror or full}")
-        if self._leave_out_empty and problem is None and self._problem is None:
-            self._leave_columns_out()
         if self._begun and self._folder is not None and problem is None:
             self._folder.know_only()
         for path, temporary in self._begun.items():
@@ -119,49 +111,6 @@ class TableFiles:
                 temporary.unlink(missing_ok=True)
         if problem is None and self._problem is not None:
             raise self._problem
-
-    def _leave_columns_out(self) -> None:
-        """Write the table anew without its empty columns, then its text."""
-        assert self._folder is not None
-        path, written = self._folder.table, self._begun[self._folder.table]
-        self._open = {}
-        full = written.with_name(f"{written.name}.full")
-        try:
-            os.replace(written, full)
-            names = filled_columns(full)
-            with full.open("rb") as source, written.open("wb") as target:
-                whole = pq.ParquetFile(source)
-                schema = pa.schema(
-                    [whole.schema_arrow.field(name) for name in names], whole.schema_arrow.metadata
-                )
-                with pq.ParquetWriter(target, schema) as writer:
-                    for place in range(whole.num_row_groups):
-                        rows = whole.read_row_group(place, names)
-                        writer.write_table(rows.cast(schema))
-                        if self._as_csv:
-                            self._add_text(self._folder.csv_file, rows.to_pandas())
-            for text in self._open.values():
-                text.close()
-        except OSError as problem:
-            self._problem = SaveError(f"cannot write {path}: {problem.strerror or problem}")
-        finally:
-            with suppress(OSError):
-                full.unlink(missing_ok=True)
-
-
-def filled_columns(file: Path) -> list[str]:
-    """Of a table its inputs, the results of every table, and the other results that some row has."""
-    with file.open("rb") as opened:
-        told, names = pq.read_metadata(opened), list[str]()
-        for place in range(told.num_columns):
-            name = told.schema.column(place).path
-            groups = [told.row_group(i).column(place).statistics for i in range(told.num_row_groups)]
-            if may_be_left_out(name) and all(
-                each and each.null_count and not each.num_values for each in groups
-            ):
-                continue
-            names.append(name)
-    return names
 
 
 def _with_text(table: pd.DataFrame) -> pa.Schema:

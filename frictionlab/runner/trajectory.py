@@ -11,7 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
-from frictionlab.runner.execute import within
+from frictionlab.runner.engine import within
 from frictionlab.runner.part import beside_in_si, si_scales
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.study.grid import law_in_scene

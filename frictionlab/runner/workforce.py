@@ -1,19 +1,21 @@
-"""Who solves the chunks of a run: threads, processes of this machine, the workers of a cluster, any executor."""
+"""Who solves the pieces of a run: threads, processes of this machine, the workers of a cluster, any executor."""
 
 from __future__ import annotations
 
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
-from frictionlab.runner.execute import Renew, SentGroup, Take, Workers, collect
+from frictionlab.runner.engine import Renew, Sent, SentPiece, Solve, Take, solve_each
 from frictionlab.runner.files import NoScheduler
-from frictionlab.runner.open_chunks import OpenChunk
+from frictionlab.runner.pieces import Chunk
 
 ANSWERS_WITHIN = 10.0
 """Seconds in which a scheduler answers."""
@@ -21,42 +23,44 @@ ANSWERS_WITHIN = 10.0
 
 @dataclass(frozen=True)
 class Workforce:
-    """An executor. renew: makes another where a lost worker broke it. elsewhere: whether in other processes."""
+    """An executor and what it is given to do.
+
+    renew: makes another where a lost worker broke it. elsewhere: whether in other processes.
+    """
 
     executor: Executor
     renew: Renew | None = None
     elsewhere: bool = True
+    solve_each: Solve = solve_each
 
-    def solve(self, groups: Iterable[SentGroup], take: Take, tick: Callable[[], None]) -> None:
-        """Solve groups of chunks, as ``collect`` does.
+    def solve(self, pieces: Iterable[SentPiece], take: Take, tick: Callable[[], None]) -> None:
+        """Solve pieces, as ``Sent.collect`` does.
 
         In other processes the first of each kind comes back before others of it are sent: the kernels it needs are
         then compiled once.
         """
+        sent, known = Sent(self.executor, self.solve_each, self.renew), set[Any]()
 
-        def first_of_each_kind_solved() -> Iterator[SentGroup]:
-            known: set[Any] = set()
-            for each in groups:
-                kinds = {_kernels_of(work) for work in each}
-                if kinds <= known:
-                    yield each
+        def first_of_each_kind_solved() -> Iterator[SentPiece]:
+            for piece, chunks in pieces:
+                if self.elsewhere and (kind := _kernels_of(chunks[0])) not in known:
+                    known.add(kind)
+                    sent.collect([(piece, chunks)], take, tick)
                 else:
-                    known.update(kinds)
-                    collect([each], self.executor, take, tick, self.renew)
+                    yield piece, chunks
 
-        sent = first_of_each_kind_solved() if self.elsewhere else groups
-        collect(sent, self.executor, take, tick, self.renew)
+        sent.collect(first_of_each_kind_solved(), take, tick)
 
 
-def _kernels_of(each: OpenChunk) -> Any:
-    """What decides which kernels a chunk needs."""
-    law, method, scene = each.chunk.law, each.chunk.method, each.chunk.scenes.scene
-    return type(law), type(method), scene.degrees_of_freedom, scene.load_along_belt_only
+def _kernels_of(chunk: Chunk) -> Any:
+    """Return what decides which kernels a chunk needs."""
+    scene = chunk.scenes.scene
+    return type(chunk.law), type(chunk.method), scene.degrees_of_freedom, scene.load_along_belt_only
 
 
 @contextmanager
 def workforce(given: Executor | Workforce | None) -> Iterator[Workforce]:
-    """The caller's, or threads that are not waited for after an interrupt."""
+    """Give the caller's workers, or threads."""
     if isinstance(given, Workforce):
         yield given
         return
@@ -69,17 +73,19 @@ def workforce(given: Executor | Workforce | None) -> Iterator[Workforce]:
 
 @contextmanager
 def threads(count: int) -> Iterator[Workforce]:
-    """So many threads of this process, which are not waited for at the end."""
-    pool = Workers(count)
+    """Give so many threads of this process; what they are at is given up at the end."""
+    given_up = threading.Event()
+    pool = ThreadPoolExecutor(count)
     try:
-        yield Workforce(pool, elsewhere=False)
+        yield Workforce(pool, elsewhere=False, solve_each=partial(solve_each, given_up=given_up))
     finally:
+        given_up.set()
         pool.shutdown(wait=False, cancel_futures=True)
 
 
 @contextmanager
 def processes(count: int) -> Iterator[Workforce]:
-    """So many processes of this machine; one that dies is replaced, and what it was at is begun anew."""
+    """Give so many processes of this machine; one that dies is replaced, and what it was at is begun anew."""
     pools: list[ProcessPoolExecutor] = []
 
     def renew() -> Executor:
@@ -95,7 +101,7 @@ def processes(count: int) -> Iterator[Workforce]:
 
 
 def _end(pool: ProcessPoolExecutor) -> None:
-    """Without waiting for what is being solved: it is not asked for any more."""
+    """End a pool without waiting for what is being solved: nobody asks for it any more."""
     running = list((getattr(pool, "_processes", None) or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in running:
@@ -108,7 +114,7 @@ def _leave_interrupts_to_the_parent() -> None:
 
 @contextmanager
 def cluster(address: str) -> Iterator[Workforce]:
-    """The workers of a dask scheduler. Raises NoScheduler where none answers, or distributed is not installed."""
+    """Give the workers of a dask scheduler. Raises NoScheduler where none answers or dask is not installed."""
     try:
         from distributed import Client
     except ModuleNotFoundError as problem:

@@ -26,9 +26,9 @@ from run_folders import without_stamps
 
 import frictionlab as fl
 from frictionlab.runner import api, table_files
-from frictionlab.runner.chunks import Task, cuts, is_long
 from frictionlab.runner.files import FolderError, SaveError
-from frictionlab.runner.open_chunks import open_chunks
+from frictionlab.runner.packing import kept_of, packed
+from frictionlab.runner.pieces import Task, blocks_of, cuts, is_long
 from frictionlab.runner.solve import solve
 from frictionlab.runner.summary import summary
 from frictionlab.runner.table import inputs, records
@@ -180,24 +180,32 @@ def test_a_prescribed_slip_has_no_force_to_tell_friction_against() -> None:
 
 def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
     curves = list(parse_study(study(sweep=MANY)).curves())
-    pieces = [work.chunk for work in open_chunks(curves, Task(1e-8))]
+    (block,) = blocks_of(curves, Task(1e-8))
 
-    assert sorted(row for piece in pieces for row in piece.rows) == list(range(800))
-    assert all(64 <= len(piece.rows) <= 250 for piece in pieces)
+    assert sorted(row for piece in block.pieces for row in piece.rows) == list(range(800))
+    assert all(64 <= len(piece) <= 250 for piece in block.pieces)
     assert [len(curve.rows) for curve in curves] == [400, 400]
-    for piece in pieces:
-        assert len({scene.frequency for scene in piece.scenes}) == 1
-        speeds = [scene.belt_speed for scene in piece.scenes]
+    for piece in block.pieces:
+        (chunk,) = piece.chunks()
+        assert len({scene.frequency for scene in chunk.scenes}) == 1
+        speeds = [scene.belt_speed for scene in chunk.scenes]
         assert speeds == sorted(speeds)
 
 
-def test_a_continued_run_solves_what_is_left_of_the_very_chunks_of_a_whole_one() -> None:
-    curves = list(parse_study(study(sweep=MANY)).curves())
-    done = np.arange(800) % 3 == 0
+def test_short_curves_of_a_long_study_are_solved_and_kept_together() -> None:
+    sweep = {
+        "scene.normal_load": {"start": 1, "stop": 9, "num": 3000},
+        "scene.belt_speed": [1, 2, 3, 4, 5, 6, 7],
+    }
+    blocks = blocks_of(list(parse_study(study(sweep=sweep)).curves()), Task(1e-8))
 
-    whole = [work.chunk.rows for work in open_chunks(curves, Task(1e-8))]
-    left = [work.chunk.rows.tolist() for work in open_chunks(curves, Task(1e-8), done)]
-    assert left == [rows[~done[rows]].tolist() for rows in whole]
+    rows = np.concatenate([piece.rows for block in blocks for piece in block.pieces])
+    assert sorted(rows.tolist()) == list(range(21000))
+    for block in blocks:
+        own = np.concatenate([piece.rows for piece in block.pieces])
+        assert own.max() - own.min() == len(own) - 1
+        assert all(len(piece) <= 500 for piece in block.pieces)
+        assert all(len(piece) > 490 for piece in block.pieces[:-1])
 
 
 @pytest.mark.parametrize("points", [2, 64, 187, 188, 250, 251, 312, 313, 1000, 3999])
@@ -222,11 +230,11 @@ def test_rows_do_not_depend_on_the_number_of_workers() -> None:
 
 def test_chunks_and_answers_can_cross_to_another_process() -> None:
     curves = list(parse_study(study(keep={"orbit": 4})).curves())
-    piece = next(open_chunks(curves, Task(1e-8, 4))).chunk
-    parts = pickle.loads(pickle.dumps(solve(pickle.loads(pickle.dumps(piece)))))
+    (chunk,) = blocks_of(curves, Task(1e-8, 4))[0].pieces[0].chunks()
+    answers = pickle.loads(pickle.dumps(packed([solve(pickle.loads(pickle.dumps(chunk)))])))
 
-    assert sorted(row for part in parts for row in part.rows) == list(range(6))
-    assert [sorted(part.kept["orbits"]) for part in parts] == [[], [0, 2, 4, 5]]
+    assert len(answers) == 6
+    assert kept_of(answers, "orbits").groupby("row").size().tolist() == [4] * 4
 
 
 def test_nothing_is_written_without_an_output_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,9 +16,9 @@ import frictionlab as fl
 from frictionlab.runner import api
 from frictionlab.runner.batch import plan
 from frictionlab.runner.chosen_speeds import halves_to_add
-from frictionlab.runner.kept_chunks import KeptChunks
 from frictionlab.runner.saved import read_saved
 from frictionlab.runner.solving import Solving, run_share
+from frictionlab.runner.store import Store
 from frictionlab.study.load import load_study, parse_study
 from frictionlab.values.notes import StudyError
 from frictionlab.values.quantities import Floats
@@ -211,7 +211,7 @@ def test_a_part_cannot_know_them(tmp_path: Path) -> None:
     with pytest.raises(
         StudyError, match=r"belt speeds within 0\.001 are chosen as a run goes, and a part of it"
     ):
-        run_share(parse_study(STUDY), (1, 2), KeptChunks(tmp_path))
+        run_share(parse_study(STUDY), (1, 2), Store(tmp_path))
 
 
 @pytest.mark.parametrize(

@@ -5,20 +5,27 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Sequence
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fake_methods import Fake, faked, register
 
 import frictionlab as fl
-from frictionlab.runner import execute as limit
-from frictionlab.runner.chunks import Chunk
-from frictionlab.runner.execute import OverLimit, Workers, within
+from frictionlab.runner import engine as limit
+from frictionlab.runner.engine import OverLimit, within
+from frictionlab.runner.pieces import Chunk
 from frictionlab.study.load import parse_study
 from frictionlab.values.notes import StudyError
 
 STUDY = faked([4, 5, 6, 7, 8], limit={"seconds_per_point": 0.3})
+
+
+def run_elsewhere(study: dict[str, Any], out: Path | None = None) -> Any:
+    """Run by an executor of somebody's, which may be processes."""
+    with ThreadPoolExecutor(1) as pool:
+        return fl.run(study, out=out, executor=pool)
 
 
 @pytest.fixture
@@ -36,9 +43,8 @@ def allowed(released: Any, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, f
     """Points that are solved together and the seconds they may take, which those with belt speed 6 exceed."""
     told = list[tuple[int, float]]()
 
-    def by_the_clock(seconds: float, work: Any, given: Chunk | Sequence[Chunk]) -> Any:
-        chunks = [given] if isinstance(given, Chunk) else given
-        speeds = [scene.belt_speed for chunk in chunks for scene in chunk.scenes]
+    def by_the_clock(seconds: float, work: Any, given: Chunk, **_how: Any) -> Any:
+        speeds = [scene.belt_speed for scene in given.scenes]
         told.append((len(speeds), seconds))
         if not released.is_set() and 6.0 in speeds:
             raise OverLimit
@@ -49,19 +55,19 @@ def allowed(released: Any, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, f
 
 
 def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(released, allowed, tmp_path):
-    done = fl.run(STUDY, out=tmp_path)
+    done = run_elsewhere(STUDY, out=tmp_path)
 
     assert allowed == [(5, 0.3), (2, 0.3), (3, 0.3), (1, 0.3), (2, 0.3)]
     assert done.table["status"].tolist() == ["ok", "ok", "killed", "ok", "ok"]
     reason = "over the limit of 0.3 s (limit: {seconds_per_point: 0.3} in the study)"
     assert done.table["reason"].tolist()[2] == reason
     released.set()
-    again = fl.run(STUDY, out=tmp_path)
-    assert (again.computed, again.table["status"].tolist()) == (1, ["ok"] * 5)
+    again = run_elsewhere(STUDY, out=tmp_path)
+    assert (again.computed, again.table["status"].tolist()) == (5, ["ok"] * 5)
 
 
 def test_compilation_does_not_count(monkeypatch):
-    monkeypatch.setattr("frictionlab.runner.execute.compiling", lambda: True)
+    monkeypatch.setattr("frictionlab.runner.engine.compiling", lambda: True)
 
     assert within(0.01, lambda: time.sleep(0.3) or "done") == "done"
 
@@ -75,27 +81,19 @@ def test_work_within_a_limit_gives_its_result_or_its_error():
 
 
 def test_a_point_that_never_ends_is_killed(released):
-    done = fl.run(STUDY | {"sweep": {"scene.belt_speed": [6]}})
+    done = run_elsewhere(STUDY | {"sweep": {"scene.belt_speed": [6]}})
 
     assert done.table["status"].tolist() == ["killed"]
 
 
 def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypatch):
     allowed = []
-    monkeypatch.setattr(limit, "within", lambda seconds, work, chunk: allowed.append(seconds) or work(chunk))
-    fl.run(STUDY | {"sweep": {"scene.belt_speed": [10.0 + 0.01 * k for k in range(50)]}})
+    monkeypatch.setattr(
+        limit, "within", lambda seconds, work, chunk, **_: allowed.append(seconds) or work(chunk)
+    )
+    run_elsewhere(STUDY | {"sweep": {"scene.belt_speed": [10.0 + 0.01 * k for k in range(50)]}})
 
     assert allowed == [0.3 * 50 / 10]
-
-
-def test_curves_that_are_sent_together_are_answered_but_for_the_point_over_the_limit(allowed, monkeypatch):
-    monkeypatch.setattr("frictionlab.runner.chunks.LONG_STUDY", 15)
-    sweep = {"scene.normal_load": [1.0, 2.0, 3.0], "scene.belt_speed": [4, 5, 6, 7, 8]}
-    done = fl.run(STUDY | {"sweep": sweep, "limit": {"seconds_per_point": 0.2}})
-
-    assert allowed[0] == (15, pytest.approx(3 * 0.2))
-    assert done.table["status"].tolist() == ["ok", "ok", "killed", "ok", "ok"] * 3
-    assert done.table["mean_friction"].notna().sum() == 12
 
 
 def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
@@ -108,17 +106,17 @@ def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
         fl.steady_state(scene, fl.Coulomb(mu=0.4), method=Fake())
 
 
-def test_workers_answer_in_order_drop_what_is_cancelled_and_hold_no_program_back():
-    pool = Workers(1)
-    hold = threading.Event()
-    first, second, third = pool.submit(hold.wait, 10.0), pool.submit(pow, 2, 3), pool.submit(pow, 2, 5)
-    assert third.cancel()
-    hold.set()
-    assert (first.result(5.0), second.result(5.0)) == (True, 8)
-    failing = pool.submit(divmod, 1, 0)
-    assert isinstance(failing.exception(5.0), ZeroDivisionError)
-    pool.shutdown(wait=True, cancel_futures=True)
-    assert all(thread.daemon and not thread.is_alive() for thread in pool._threads)
+def test_work_that_is_given_up_holds_nobody_back(released):
+    given_up = threading.Event()
+    threading.Timer(0.2, given_up.set).start()
+
+    with pytest.raises(CancelledError):
+        within(60.0, released.wait, 60.0, given_up=given_up)
+
+
+def test_a_limit_needs_processes(released):
+    with pytest.raises(StudyError, match=r"limit\.seconds_per_point: needs processes: give --processes N"):
+        fl.run(STUDY)
 
 
 @pytest.mark.parametrize("given", [0, -1, "long", True])

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fake_methods import Fake, breaks_down, faked, is_wrong, register
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.runner import kept_chunks as code_digest
+from frictionlab.runner import store as code_digest
 from frictionlab.study import registry
 
 pytestmark = deep("seconds of runs")
@@ -56,7 +57,7 @@ def test_a_point_that_failed_is_tried_again_by_other_code(
 
     again = fl.run(STUDY, out=tmp_path)
 
-    assert (again.computed, again.table["status"].tolist()) == (1, ["ok", "ok"])
+    assert (again.computed, again.table["status"].tolist()) == (2, ["ok", "ok"])
     assert fl.run(STUDY, out=tmp_path).computed == 0
 
 
@@ -77,7 +78,7 @@ def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
 def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed(
     trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def dies(done: int, total: int, _left: float) -> None:
+    def dies(done: int, total: int, *_how: Any) -> None:
         raise MemoryError
 
     trouble({4.0: breaks_down})
@@ -93,7 +94,7 @@ def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed
 def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from frictionlab.runner import kept_chunks as home
+    from frictionlab.runner import store as home
 
     study = fl.run(STUDY).study
     before = home.code_digest(study)

@@ -18,8 +18,8 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.runner import workforce
-from frictionlab.runner.kept_chunks import KeptChunks
 from frictionlab.runner.solving import run_share
+from frictionlab.runner.store import Store
 from frictionlab.runner.workforce import Workforce
 from frictionlab.study.load import parse_study
 from frictionlab.study.written import yaml_text
@@ -118,14 +118,14 @@ def test_a_pool_that_breaks_without_another_ends_the_run() -> None:
 
 
 def test_parts_share_all_chunks_between_them(tmp_path: Path) -> None:
-    plan, kept = parse_study(STUDY), KeptChunks(tmp_path / "kept")
+    plan, kept = parse_study(STUDY), Store(tmp_path / "kept")
     shares = [run_share(plan, (number, 3), kept) for number in (3, 1, 2)]
     again = run_share(plan, (1, 3), kept)
     gathered = fl.run(plan, out=tmp_path / "run", cache=tmp_path / "kept")
 
-    assert sum(share.points for share in shares) == 1000
-    assert [share.computed for share in shares] == [share.points for share in shares]
-    assert (again.computed, again.found) == (0, shares[1].points)
+    assert sum(points for _, points in shares) == 1000
+    assert [share.computed for share, _ in shares] == [points for _, points in shares]
+    assert (again[0].computed, again[0].found) == (0, shares[1][1])
     assert gathered.computed == 0
     assert_frame_equal(gathered.table, fl.run(plan).table, check_exact=True)
 

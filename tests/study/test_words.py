@@ -12,8 +12,8 @@ import pytest
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
 from frictionlab.report.question import scene_sentences
-from frictionlab.runner.chunks import cuts, task_of
-from frictionlab.runner.kept_chunks import Keys
+from frictionlab.runner.pieces import blocks_of, task_of
+from frictionlab.runner.store import Keys
 from frictionlab.runner.table import inputs
 from frictionlab.scene.waveforms import Form, Term
 from frictionlab.study.load import load_study, parse_study
@@ -92,10 +92,10 @@ CHANGES = [
 def test_each_change_of_a_word_gives_another_digest_and_another_key_of_its_chunks() -> None:
     plans = [parse_study(study({}, scene=SCENE | change)) for change in [{}, *CHANGES]]
     keys = Keys({})
-    chunks = [[cut.chunk(task_of(plan)) for cut in cuts(plan.curves(), long=False)] for plan in plans]
-    found = [keys.of(each, "coulomb", "auto") for several in chunks for each in several]
+    blocks = [blocks_of(list(plan.curves()), task_of(plan)) for plan in plans]
+    found = [keys.of(piece) for (block,) in blocks for piece in block.pieces]
 
-    assert None not in found
+    assert not any(key.startswith("?") for key in found)
     assert len(set(found)) == len(plans)
     assert len({plan.digest() for plan in plans}) == len(plans)
     words = [parse_study(study({"scene.drive.waveform": ["sine", each]})) for each in ("square", SUM)]

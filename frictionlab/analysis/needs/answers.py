@@ -13,9 +13,9 @@ import pandas as pd
 from frictionlab.analysis.needs.motion import FRICTION_FREE, LesserModel, MotionWay
 from frictionlab.curves.verdict import Estimate, reduction
 from frictionlab.runner.api import table_of
-from frictionlab.runner.chunks import Task
 from frictionlab.runner.curve_table import curve_table
 from frictionlab.runner.part import derived_columns
+from frictionlab.runner.pieces import Task
 from frictionlab.runner.words import counted
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import registry

@@ -75,7 +75,7 @@ OUTSIDE = {
         "hypothesis": "testing",
         "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions
         "llvmlite": "compile",
-        "filelock": "compile",
+        "filelock": "compile runner",
         "pint": "values.units",
         "ruamel": "study runner",
         "pandas": "values.units runner charts report analysis cli",

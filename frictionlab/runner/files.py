@@ -8,15 +8,11 @@ One run at a time in a folder: a lock that the system drops with the process tha
 from __future__ import annotations
 
 import contextlib
-import errno
 import hashlib
 import os
 import re
-import sys
-import threading
 from collections.abc import Iterator
 from contextlib import suppress
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -110,20 +106,7 @@ def stamp_of_file(path: Path) -> dict[str, Any]:
 
 
 MARK_FILE = ".running"
-"""In the folder while somebody works in it; locked, it says who. One without a lock is left by a killed run."""
-_BYTE = 1 << 20
-"""Where Windows locks the file: away from the words, which others read."""
-_TAKEN = {errno.EACCES, errno.EAGAIN, errno.EDEADLK}
-
-
-class _Held(threading.local):
-    """The folders in which this thread works."""
-
-    def __init__(self) -> None:
-        self.folders: set[Path] = set()
-
-
-_held = _Held()
+"""In the folder while somebody works in it, and locked; one without a lock is left by a killed run."""
 
 
 @contextlib.contextmanager
@@ -133,28 +116,30 @@ def alone_in(folder: Path, make: bool = True) -> Iterator[None]:
     make: the folder, where it is missing; it goes again where nothing was put there. Where files cannot be locked or
     written, none is: what is written there then says what is wrong. Raises FolderError where another run is at work.
     """
+    from filelock import FileLock, Timeout  # takes a moment, of runs alone
+
     key = folder.absolute()
-    if key in _held.folders or not (make or key.is_dir()):
+    # one lock a folder, which knows its thread again; its owner may be giving it back at this moment
+    lock = FileLock(key / MARK_FILE, timeout=0.1, is_singleton=True)
+    if lock.is_locked or not (make or key.is_dir()):
         yield
         return
     made = [place for place in [key, *key.parents] if not place.exists()]
-    with contextlib.suppress(OSError):
-        key.mkdir(parents=True, exist_ok=True)
     try:
-        mark = _taken(key)
-    except OSError:
+        lock.acquire()  # makes the folder, too
+    except Timeout:
         other = ", or choose another folder with -o" if make else ""
-        raise FolderError(
-            f"{folder} is in use by another run{_whose(key / MARK_FILE)}; wait until it has ended{other}"
-        ) from None
-    _held.folders.add(key)
+        raise FolderError(f"{folder} is in use by another run; wait until it has ended{other}") from None
+    except (OSError, NotImplementedError):
+        pass
     try:
         yield
     finally:
-        _held.folders.discard(key)
-        if mark is not None:
-            _given_back(mark, key / MARK_FILE)
-        with contextlib.suppress(OSError):  # nothing was written
+        if lock.is_locked:
+            with suppress(OSError):  # on Windows the library removes it
+                (key / MARK_FILE).unlink()
+            lock.release()
+        with suppress(OSError):  # nothing was written
             for place in made:
                 place.rmdir()
 
@@ -164,67 +149,3 @@ def check_free(folder: Path) -> None:
     if (folder / MARK_FILE).exists():
         with alone_in(folder):
             pass
-
-
-def _taken(folder: Path) -> int | None:
-    """The mark of the folder, locked; None where there can be none. Raises OSError where another holds it."""
-    file = folder / MARK_FILE
-    while True:
-        try:
-            mark = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
-        except OSError:
-            return None
-        try:
-            _lock(mark)
-        except OSError as problem:
-            os.close(mark)
-            if problem.errno in _TAKEN:
-                raise
-            return None
-        if _is_still(mark, file):
-            break
-        os.close(mark)  # its owner has just removed it
-    with contextlib.suppress(OSError):
-        os.ftruncate(mark, 0)
-        os.write(mark, f"process {os.getpid()}, since {datetime.now():%H:%M:%S}".encode())
-    return mark
-
-
-def _is_still(mark: int, file: Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(mark), file.stat())
-    except OSError:
-        return False
-
-
-def _whose(file: Path) -> str:
-    try:
-        return f" ({file.read_text(encoding='utf-8')})"
-    except (OSError, ValueError):
-        return ""
-
-
-def _given_back(mark: int, file: Path) -> None:
-    if sys.platform == "win32":  # nobody removes a file there that is open
-        os.close(mark)
-    with contextlib.suppress(OSError):
-        file.unlink()
-    if sys.platform != "win32":
-        os.close(mark)
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(mark: int) -> None:
-        """Raises OSError where another has locked it."""
-        os.lseek(mark, _BYTE, os.SEEK_SET)
-        msvcrt.locking(mark, msvcrt.LK_NBLCK, 1)
-        os.lseek(mark, 0, os.SEEK_SET)
-
-else:
-    import fcntl
-
-    def _lock(mark: int) -> None:
-        """Raises OSError where another has locked it."""
-        fcntl.flock(mark, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -81,7 +81,7 @@ OUTSIDE = {
         "pandas": "values.units runner charts report analysis cli",
         "xarray": "report",
         "pyarrow": "runner",
-        "tqdm": "runner",  # inside a function: it is used by long runs in a notebook alone
+        "tqdm": "runner",  # inside a function: it is used by long runs alone
         "matplotlib": "charts report.comparison bench.charts bench.account",  # of comparison the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",
@@ -239,7 +239,7 @@ def test_importing_the_package_brings_in_nothing_heavy() -> None:
     assert {"importlib.metadata", "numpy", "scipy", "pydantic"}.isdisjoint(loaded.split())
 
 
-HEAVY = "hypothesis", "matplotlib", "pandas", "pint", "pyarrow"
+HEAVY = "hypothesis", "matplotlib", "pandas", "pint", "pyarrow", "tqdm"
 
 
 @deep("processes")

@@ -17,14 +17,14 @@ LIMITS = {
     "methods": 8017,
     "motion": 4599,
     "report": 1772,
-    "runner": 4116,
+    "runner": 4090,
     "scene": 1706,
     "study": 2796,
     "testing": 1491,
     "theory": 831,
     "tools": 19,
     "values": 1383,
-    "tests": 26909,
+    "tests": 26879,
     "plugins": 3228,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -1,4 +1,4 @@
-"""Progress of long runs: one updating line on a terminal, a bar in a notebook, separate lines elsewhere."""
+"""Progress of long runs, told by tqdm: a line that is updated on a terminal, a bar in a notebook; lines in a log."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from threading import Event, Lock, Thread
-from types import TracebackType
+from threading import Event, Thread
 from typing import Any, Self, TextIO
 
 from frictionlab.compile.notice import kernel_at_work
 
-Progress = Callable[..., None]
-"""Called now and then with the number of points done and of all points, and the seconds left, NaN where not known."""
+Progress = Callable[[int, int, float, str], None]
+"""Called now and then with the number of points done and of all points, the seconds left, NaN where not known, and
+the words for what is under way, "" for nothing."""
 
 QUIET = 2.0
 """Time [s] before a run prints its progress."""
@@ -23,12 +23,12 @@ OFTEN, NOW_AND_THEN = 0.2, 5.0
 """Time [s] between two states of the updating line, and between two lines where none can be updated."""
 
 
-def silent(done: int, total: int, left: float = math.nan, at: str = "") -> None:
+def silent(done: int, total: int, left: float = math.nan, words: str = "") -> None:
     """No progress."""
 
 
 def compiling() -> bool:
-    """Whether numba compiles at this moment, on whatever other thread: it then holds its one lock."""
+    """Check whether numba compiles at this moment, on whatever other thread: it then holds its one lock."""
     module = sys.modules.get("numba.core.compiler_lock")
     lock = getattr(getattr(module, "global_compiler_lock", None), "_lock", None)
     if lock is None:
@@ -39,143 +39,112 @@ def compiling() -> bool:
 
 
 class Meter:
-    """What a run is at, told on a stream from the third second on; no run below that prints anything.
+    """Progress of a run, told on a stream from the third second on; no run below that prints anything.
 
     Within ``with`` a thread tells it, so that it goes on while kernels compile or figures are drawn.
     """
 
     def __init__(self, stream: TextIO, whose: str = "") -> None:
-        self._stream, self._whose = stream, whose
-        self._updating = stream.isatty() and os.environ.get("TERM") != "dumb"
+        self._stream, self._whose, self._in_notebook = stream, whose, "ipykernel" in sys.modules
+        self._updating = self._in_notebook or (_is_terminal(stream) and os.environ.get("TERM") != "dumb")
         self._start = time.monotonic()
-        self._next, self._shown = self._start + QUIET, 0
-        self._one_at_a_time, self._ended, self._thread = Lock(), Event(), Thread(target=self._go_on)
+        self._bar: Any = None
+        self._ended, self._thread = Event(), Thread(target=self._go_on, daemon=True)
         self.begins("solving", "points")
 
     def begins(self, doing: str, things: str = "") -> None:
-        """The next stage of the run, and what is counted in it."""
+        """Name the next stage of the run, and what is counted in it."""
+        self._at = 0, 0, math.nan, ""
         self._doing, self._things = doing, things
-        self._done = self._total = self._at_first = 0
-        self._working, self._last = 0.0, time.monotonic()
-        self._left: float | None = None
 
-    def __call__(self, done: int, total: int, left: float | None = None, at: str = "") -> None:
-        """Tell how far the stage is, if it is time to; left: seconds, NaN where not known, None by the count."""
-        self._left = left
-        self._at_first = self._at_first if self._total else done
-        self._done, self._total = done, total
-        self.look()
+    def __call__(self, done: int, total: int, left: float = math.nan, words: str = "") -> None:
+        """Take down how far the stage is; left: seconds, NaN where not known; words: for what is under way."""
+        self._at = done, total, left, words
 
-    def look(self) -> None:
-        """Tell what goes on, if it is time to."""
-        with self._one_at_a_time:
-            now, waiting = time.monotonic(), compiling()
-            self._working += 0.0 if waiting else now - self._last
-            self._last = now
-            if now < self._next or self._ended.is_set():
-                return
-            self._next = now + (OFTEN if self._updating else NOW_AND_THEN)
-            self._write(self._words(now - self._start, kernel_at_work() if waiting else ""))
-
-    def _words(self, passed: float, kernel: str) -> str:
-        count = f": {self._done} of {self._total} {self._things}" if self._total else ""
-        new = self._done - self._at_first  # kernels are compiled once: that is not held against the points
-        left = self._working / new * (self._total - self._done) if new else 0.0
-        left = left if self._left is None else self._left
-        # how long kernels take to compile is not known
-        facts = [f"compiling {kernel}", self._doing + count] if kernel else [self._doing + count]
-        facts += [f"about {spoken(left)} left"] if left > 0.5 and not kernel else []
-        return self._whose + ", ".join([*facts, f"{spoken(passed)} so far"])
-
-    def _write(self, line: str) -> None:
-        with suppress(OSError, ValueError):  # a stream that was closed is no error
-            if self._updating:
-                line = line[: self._room()]
-                self._stream.write("\r" + line.ljust(self._shown))
-                self._shown = len(line)
-            else:
-                self._stream.write(line + "\n")
+    def write(self, text: str) -> None:
+        """Write on the stream at once; what it does not take is lost: a stream that was closed is no error."""
+        with suppress(OSError, ValueError):
+            self._stream.write(text)
             self._stream.flush()
-
-    def _room(self) -> int:
-        """Letters that a line takes: one less than there are columns, as some terminals wrap at the last one."""
-        try:
-            return (os.get_terminal_size(self._stream.fileno()).columns or 80) - 1
-        except (OSError, ValueError):
-            return 79
 
     def clear(self) -> None:
         """Erase the updating line: something else is about to be printed."""
-        with self._one_at_a_time, suppress(OSError, ValueError):
-            if self._shown:
-                self._stream.write("\r" + " " * min(self._shown, self._room()) + "\r")
-                self._stream.flush()
-                self._shown = 0
-
-    def close(self) -> None:
-        """Tell nothing more."""
-        self._ended.set()
-        self.clear()
-
-    def _go_on(self) -> None:
-        while not self._ended.wait(OFTEN):
-            self.look()
+        if self._bar is not None:
+            with self._bar.get_lock():
+                self._bar.clear(nolock=True)
 
     def __enter__(self) -> Self:
-        self._thread.daemon = True
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
         self._thread.join()
+        if self._bar is not None:
+            self._bar.total = None  # else a notebook keeps the bar, as one of work that failed
+            self._bar.close()
 
+    def _go_on(self) -> None:
+        pause = QUIET
+        while not self._ended.wait(pause):
+            pause = self._tell(self._line(), *self._at[:2])
 
-class NotebookMeter(Meter):
-    """The same as a bar, as notebooks draw it."""
-
-    def __init__(self, stream: TextIO) -> None:
-        super().__init__(stream)
-        self._updating = True
-        self._bar: Any = None
-
-    def _write(self, line: str) -> None:
+    def _tell(self, line: str, done: int, total: int) -> float:
+        """Tell what goes on; return the time [s] until it is told again."""
+        if not self._updating:
+            self.write(line + "\n")
+            return NOW_AND_THEN
         if self._bar is None:
             from tqdm.auto import tqdm  # takes a moment, of long runs alone
 
-            self._bar = tqdm(total=self._total, bar_format="{desc}{bar}", leave=False)
-        if self._bar.total != self._total:
-            self._bar.reset(self._total)
-        self._bar.n = self._done
+            shape = "{desc}{bar}" if self._in_notebook else "{desc}"
+            self._bar = tqdm(total=total, bar_format=shape, leave=False, file=self)
+        if self._bar.total != total:
+            self._bar.reset(total)
+        self._bar.n, self._bar.ncols = done, None if self._in_notebook else _room(self._stream)
         self._bar.set_description_str(line)
+        return OFTEN
 
-    def clear(self) -> None:
-        """Take the bar away."""
-        with self._one_at_a_time:
-            if self._bar is not None:
-                self._bar.close()
-            self._bar = None
+    def _line(self) -> str:
+        done, total, left, words = self._at
+        kernel = kernel_at_work() if compiling() else ""
+        stage = f"{self._doing}: {done} of {total} {self._things}".rstrip() if total else self._doing
+        # how long kernels take to compile is not known
+        rest = f"about {spoken(left)} left" if 0.5 < left < math.inf and not kernel else ""
+        passed = f"{spoken(time.monotonic() - self._start)} so far"
+        facts = kernel and f"compiling {kernel}", stage, words, rest, passed
+        return self._whose + ", ".join(filter(None, facts))
+
+
+def _is_terminal(stream: TextIO) -> bool:
+    with suppress(OSError, ValueError):  # it may have been closed
+        return stream.isatty()
+    return False
+
+
+def _room(stream: TextIO) -> int:
+    """Letters that a line takes: one less than there are columns, as some terminals wrap at the last one."""
+    with suppress(OSError, ValueError):
+        return (os.get_terminal_size(stream.fileno()).columns or 80) - 1
+    return 79
 
 
 ProgressAsked = Progress | bool | None
-"""What a function takes: whether to tell progress on stderr; None where somebody sees it."""
+"""Wish of a caller: whether to tell progress on stderr; None where somebody sees it."""
 
 
 @contextmanager
 def progress_told(
     progress: ProgressAsked, doing: str = "solving", things: str = "points"
 ) -> Iterator[Progress]:
-    """What tells progress, within; nobody is told where neither a terminal nor a notebook shows stderr."""
-    in_notebook, stream = "ipykernel" in sys.modules, sys.stderr
-    watched = stream is not None and (in_notebook or stream.isatty())
+    """Tell progress, within; nobody is told where neither a terminal nor a notebook shows stderr."""
+    stream, in_notebook = sys.stderr, "ipykernel" in sys.modules
     if callable(progress):
         yield progress
-    elif stream is None or not (watched if progress is None else progress):
+    elif stream is None or not (in_notebook or _is_terminal(stream) if progress is None else progress):
         yield silent
     else:
-        with (NotebookMeter if in_notebook else Meter)(stream) as meter:
+        with Meter(stream) as meter:
             meter.begins(doing, things)
             yield meter
 

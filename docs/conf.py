@@ -43,7 +43,7 @@ napoleon_type_aliases = {
         "Experiments": "analysis.fit.equivalent",
         "FittedLaws": "analysis.fit.result",
         "Needs": "analysis.needs.needs",
-        "Run": "runner.run",
+        "Run": "report.run",
     }.items()
 }
 

@@ -76,7 +76,7 @@ class Killer:
         self.alive, self.draw, self.killed = alive, draw, 0
         self.shares = sorted(draw.uniform(0.0, 0.9) for _ in range(kills))
 
-    def __call__(self, points: int, of: int, _left: float) -> None:
+    def __call__(self, points: int, of: int, *_how: Any) -> None:
         """Kill one where its share is reached."""
         due = self.killed < len(self.shares) and points > self.shares[self.killed] * of
         if due and (found := self.alive()):

@@ -19,9 +19,8 @@ from frictionlab.analysis.fit.best_waveform import BestWaveform
 from frictionlab.analysis.fit.equivalent import Equivalent, Experiments
 from frictionlab.analysis.fit.result import FittedLaws
 from frictionlab.analysis.needs.needs import Needs
-from frictionlab.runner.run import Run
 
-RESULTS = fl.Comparison, fl.SteadyState, Run, Needs, FittedLaws, Equivalent, Experiments, BestWaveform
+RESULTS = fl.Run, fl.SteadyState, Needs, FittedLaws, Equivalent, Experiments, BestWaveform
 """What users are handed: every method and property of theirs is public."""
 METHODS = {fl.Scene: ["with_"], fl.Study: ["of", "to_yaml", "cases"]}
 HANDED = *RESULTS, fl.Study

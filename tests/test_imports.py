@@ -82,7 +82,7 @@ OUTSIDE = {
         "xarray": "report",
         "pyarrow": "runner",
         "tqdm": "runner",  # inside a function: it is used by long runs alone
-        "matplotlib": "charts report.comparison bench.charts bench.account",  # of comparison the type of a figure
+        "matplotlib": "charts report.run bench.charts bench.account",  # of run the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",
         "scipy": "theory motion methods.reduced curves analysis bench.peers",

@@ -16,7 +16,6 @@ from frictionlab.cli.output import metered, print_message, print_result
 if TYPE_CHECKING:
     from frictionlab.charts.figures import FigureData
     from frictionlab.runner.progress import Meter
-    from frictionlab.runner.saved import Saved
 
 
 def draw_into(folder: Path, data: FigureData, meter: Meter) -> list[Path]:
@@ -28,15 +27,6 @@ def draw_into(folder: Path, data: FigureData, meter: Meter) -> list[Path]:
         return draw_figures(data, folder / "figures", meter)
     except OSError as problem:
         raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem
-
-
-def figure_data(saved: Saved) -> FigureData:
-    """What the figures of a saved run are drawn of; of a long table, whose rows are not all there, no orbits."""
-    from frictionlab.charts.figures import FigureData, Kept
-
-    kept = Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)
-    tables = {name: getattr(saved, name) for name in ("onsets", "curves", "attractors", "boundaries")}
-    return FigureData.of(saved.study, saved.table, saved.title, kept=kept, **tables)
 
 
 @click.command("report")
@@ -52,11 +42,12 @@ def report_command(run: Path, figures: bool) -> None:
 
 def drawn_anew(run: Path, figures: bool) -> None:
     """The figures of a run, and its report unless they alone are asked for."""
+    from frictionlab.report.run import figure_data
     from frictionlab.runner.files import alone_in
-    from frictionlab.runner.saved import read_saved
+    from frictionlab.runner.saved import load
 
     with alone_in(run, make=False):
-        saved = read_saved(run)
+        saved = load(run)
         for line in saved.damaged:
             print_message(line)
         data = figure_data(saved)

@@ -24,7 +24,7 @@ from frictionlab.cli.output import (
     print_records,
     print_result,
 )
-from frictionlab.cli.report import draw_into, figure_data
+from frictionlab.cli.report import draw_into
 from frictionlab.values.columns import ONSETS_GROUP
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from frictionlab.charts.figures import FigureData
     from frictionlab.runner.batch import Job
     from frictionlab.runner.progress import Meter
-    from frictionlab.runner.run import Run
-    from frictionlab.runner.saved import Saved
+    from frictionlab.runner.results import Results
     from frictionlab.runner.workforce import Workforce
     from frictionlab.study.law_files import Plugins
 
@@ -112,19 +111,19 @@ class RunOptions(NamedTuple):
 @click.option(
     "--scheduler",
     metavar="tcp://HOST:PORT",
-    help="Send chunks to the workers of this dask scheduler (needs frictionlab[cluster]).",
+    help="Send pieces to the workers of this dask scheduler (needs frictionlab[cluster]).",
 )
 @click.option(
     "--part",
     callback=_one_of_so_many,
     metavar="I/N",
-    help="Solve the I-th of N shares of the chunks, for job arrays; without it the same command gathers them.",
+    help="Solve the I-th of N shares of the pieces, for job arrays; without it the same command gathers them.",
 )
 @click.option(
     "--cache",
     type=options.PATH,
     metavar="DIR",
-    help="Where solved chunks are kept, and found by other runs; .cache beside the results if left out.",
+    help="Where solved pieces are kept, and found by other runs; .cache beside the results if left out.",
 )
 @click.option(
     "--cache-size",
@@ -132,7 +131,7 @@ class RunOptions(NamedTuple):
     default=4.0,
     show_default=True,
     metavar="GB",
-    help="Above it the chunks used longest ago are removed.",
+    help="Above it the pieces used longest ago are removed.",
 )
 @click.option("--csv", is_flag=True, help="Write results.csv of more than 1e5 points, too.")
 @click.option("--figures", is_flag=True, help="Draw every one of more than 1e5 points.")
@@ -178,27 +177,24 @@ def run_command(**given: Any) -> int:
     return max(_exit_code(result) for result in done)
 
 
-def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
+def _run(job: Job, asked: RunOptions, meter: Meter) -> Results:
     """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
     from frictionlab.runner import api
+    from frictionlab.runner.arguments import check_limit
+    from frictionlab.runner.folder import run_folder
+    from frictionlab.runner.store import store_of
+    from frictionlab.runner.study_run import RunWays
 
-    for line in [] if asked.force else api.run_folder(job.study, job.out).damaged():
+    for line in [] if asked.force else run_folder(job.study, job.out).damaged():
         print_message(line)
+    store = store_of(job.out, asked.cache, asked.cache_size)
     try:
         meter.begins("starting")
         with _force(asked) as force:
             meter.begins("solving", "points")
-            result = api.run(
-                job.study,
-                job.out,
-                asked.changes,
-                asked.existing,
-                executor=force,
-                progress=meter,
-                cache=asked.cache,
-                cache_gigabytes=asked.cache_size,
-                as_csv=asked.csv,
-            )
+            check_limit(job.study, force)
+            ways = RunWays(asked.changes, asked.existing, force, meter, asked.csv)
+            result = api.run(job.study, job.out, store, ways)
     except api.Interrupted as problem:
         raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
     except api.UnsavedError as problem:
@@ -212,33 +208,31 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
         raise CommandError(INTERRUPTED, f"interrupted: {left}") from None
 
 
-def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
-    """The run drawn, its report written, its onsets found where asked for; nothing is made again that is there."""
+def _shown(job: Job, result: Results, asked: RunOptions, meter: Meter) -> Results:
+    """Draw the run and write its report and its onsets where asked for; nothing is made again that is there."""
     from frictionlab.runner import api, pages
-    from frictionlab.runner.saved import saved_as
 
-    if job.study.asks_for(ONSETS_GROUP):
+    if job.study.asks_for(ONSETS_GROUP) and not result.curves.empty:
         meter.begins("finding onsets")
-        result = api.with_onsets(result)
+        api.write_derived(result, "onsets")
     if job.study.boundaries:
         meter.begins("finding boundaries")
-        result = api.with_boundaries(result)
+        api.write_derived(result, "boundaries")
     if pages.pages_are_there(result, asked.figures):
         for what, there in {"figures": job.out / "figures", "report": job.out / "report.html"}.items():
             if there.exists():
                 print_message(f"{what} in {there}")
         return result
     meter.begins("drawing", "figures")
-    saved = saved_as(result)
-    drawn = _draw(saved, result if asked.figures else None, meter)
+    drawn = _draw(result, asked.figures, meter)
     meter.begins("writing the report")
-    _report(saved, drawn)
+    _report(result, drawn)
     pages.know_pages(result, asked.figures)
     return result
 
 
 def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
-    """Who solves the chunks."""
+    """Give those who solve the pieces."""
     from frictionlab.runner import workforce
 
     if asked.scheduler is not None:
@@ -249,7 +243,7 @@ def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
 
 
 def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
-    """Solve a share of the chunks of a study and keep them; the table is for the run that gathers them."""
+    """Solve a share of the pieces of a study and keep them; the table is for the run that gathers them."""
     from frictionlab.runner.solving import run_share
     from frictionlab.runner.store import store_of
 
@@ -262,20 +256,20 @@ def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
     )
 
 
-def _how_far(result: Run) -> str:
+def _how_far(result: Results) -> str:
     done = result.size - result.counts.get("killed", 0)
     kept = f" and kept in {result.folder}" if result.folder and done else ""
     told = f"interrupted: {done} of {result.size} points are done{kept}; the same command continues"
     return f"{told}, and begins those under way again"
 
 
-def _show(result: Run) -> None:
+def _show(result: Results) -> None:
     from frictionlab.runner.summary import summary
 
     print_result(summary(result))
 
 
-def _show_failed(result: Run) -> None:
+def _show_failed(result: Results) -> None:
     """The expectations that failed, on stderr: stdout belongs to the records."""
     from frictionlab.runner.summary import failed_lines
 
@@ -283,37 +277,37 @@ def _show_failed(result: Run) -> None:
         print_message(line)
 
 
-def _draw(saved: Saved, every: Run | None, meter: Meter) -> FigureData:
-    """Draw the figures of a run, every point of it where that is given; what they are drawn of but for that."""
+def _draw(done: Results, every: bool, meter: Meter) -> FigureData:
+    """Draw the figures of a run, every point of it if asked; return what they are drawn of but for that."""
+    from frictionlab.report.run import figure_data
     from frictionlab.runner.table import whole
 
-    data = figure_data(saved)
-    if draw_into(saved.folder, data if every is None else replace(data, table=whole(every.table)), meter):
-        print_message(f"figures in {saved.folder / 'figures'}")
+    assert done.folder is not None
+    data = figure_data(done)
+    if draw_into(done.folder, replace(data, table=whole(done.table)) if every else data, meter):
+        print_message(f"figures in {done.folder / 'figures'}")
     return data
 
 
-def _report(saved: Saved, drawn: FigureData) -> None:
+def _report(done: Results, drawn: FigureData) -> None:
     from frictionlab.report.page import write_report
 
-    print_message(f"report in {write_report(saved, drawn)}")
+    print_message(f"report in {write_report(done, drawn)}")
 
 
-def _write_index(folder: Path, done: Sequence[Run]) -> None:
+def _write_index(folder: Path, done: Sequence[Results]) -> None:
     from frictionlab.report.page import write_index
-    from frictionlab.runner.saved import saved_as
 
-    print_message(f"index in {write_index(folder, [saved_as(result) for result in done])}")
+    print_message(f"index in {write_index(folder, done)}")
 
 
-def _cite(done: Sequence[Run]) -> None:
+def _cite(done: Sequence[Results]) -> None:
     from frictionlab.report.sources import bibtex
-    from frictionlab.runner.saved import saved_as
 
-    print_result(bibtex([saved_as(result) for result in done]))
+    print_result(bibtex(done))
 
 
-def _rows(job: Job, result: Run, asked: RunOptions) -> list[dict[str, Any]]:
+def _rows(job: Job, result: Results, asked: RunOptions) -> list[dict[str, Any]]:
     """The records of a run; of a folder of studies, each names its study."""
     from frictionlab.runner.table import records
 
@@ -321,10 +315,10 @@ def _rows(job: Job, result: Run, asked: RunOptions) -> list[dict[str, Any]]:
     return [whose | record for record in records(result.table)]
 
 
-def _exit_code(result: Run) -> int:
+def _exit_code(result: Results) -> int:
     from frictionlab.laws.faults import MARK
 
-    if result.to_show["reason"].astype("str").str.startswith(MARK).any():
+    if result.shown["reason"].astype("str").str.startswith(MARK).any():
         return BROKEN_PLUGIN
     bad = sum(result.counts.get(status, 0) for status in ("failed", "killed"))
     if bad and any(each.status == "failed" for each in result.study.expect):

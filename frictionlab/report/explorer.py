@@ -24,7 +24,7 @@ from frictionlab.report.tables import html
 from frictionlab.runner.curve_loads import scene_of
 from frictionlab.runner.files import FolderError
 from frictionlab.runner.folder import check_page, write_page
-from frictionlab.runner.saved import Saved
+from frictionlab.runner.results import Results
 from frictionlab.runner.words import counted
 from frictionlab.values.columns import is_belt_speed, word
 from frictionlab.values.units import in_shown_units
@@ -34,9 +34,9 @@ Quantity = tuple[str, str]
 """A swept input and the law whose parameter it is, "" for one of the scene."""
 
 
-def run_data(saved: Saved) -> dict[str, Any]:
+def run_data(saved: Results) -> dict[str, Any]:
     """The curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
-    family = family_of(in_shown_units(saved.table, saved.study.units))
+    family = family_of(in_shown_units(saved.shown, saved.study.units))
     if family is None:
         raise FolderError(f"{saved.folder}: its study sweeps no number, so there is no curve to explore")
     swept = _swept(family)
@@ -185,7 +185,7 @@ OWN_SCENE = "A body on a spring and a dashpot lies on a moving belt, and a load 
 TITLE = "Mean friction of a vibrated body on a moving belt"
 
 
-def write_explorer(file: Path, saved: Saved | None = None) -> Path:
+def write_explorer(file: Path, saved: Results | None = None) -> Path:
     """Write the page, with the table of a run if one is given; where it is.
 
     Raises FolderError where a page that a person wrote is in the way or the run sweeps nothing, SaveError.
@@ -195,7 +195,7 @@ def write_explorer(file: Path, saved: Saved | None = None) -> Path:
     return file
 
 
-def explorer(saved: Saved | None = None) -> str:
+def explorer(saved: Results | None = None) -> str:
     """The page as text. Raises FolderError."""
     data = None if saved is None else run_data(saved)
     scripts = ["address.js", "solver.js", "chart.js", "coulomb.js", *([] if data is None else ["run.js"])]
@@ -213,9 +213,9 @@ def explorer(saved: Saved | None = None) -> str:
     return _filled("page.html", values)
 
 
-def _sentence(saved: Saved) -> str:
+def _sentence(saved: Results) -> str:
     """How many points of which laws and methods there are, as HTML."""
-    table = saved.table
+    table = saved.shown
     shown = counted(len(table), "point")
     of = f" of {saved.size}, spread over them" if len(table) < saved.size else ""
     laws, methods = (escape(", ".join(map(str, table[name].unique()))) for name in ("law", "method"))

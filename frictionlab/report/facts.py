@@ -14,7 +14,7 @@ from frictionlab.charts.figures import FigureData
 from frictionlab.report.sources import Cited, sources
 from frictionlab.report.tables import Cell, settings
 from frictionlab.runner.pairs import Difference, method_pairs
-from frictionlab.runner.saved import Saved
+from frictionlab.runner.results import Results
 from frictionlab.runner.table import swept_inputs
 from frictionlab.values.columns import BELT_SPEED, belt_speed
 from frictionlab.values.units import as_shown
@@ -61,13 +61,13 @@ class CurveRows(NamedTuple):
 class Facts:
     """A run, and what is read from its tables once. drawn: what its figures were drawn of."""
 
-    saved: Saved
+    saved: Results
     drawn: FigureData | None = None
 
     @cached_property
     def table(self) -> pd.DataFrame:
         """The result table, in the units in which it is shown, laws and methods in words."""
-        return self._shown(self.saved.table)
+        return self._shown(self.saved.shown)
 
     def _shown(self, table: pd.DataFrame) -> pd.DataFrame:
         return as_shown(table, self.saved.study.units, self.saved.study.in_words)
@@ -85,7 +85,7 @@ class Facts:
     @cached_property
     def figures(self) -> FigureData:
         """What its figures of the table are drawn of."""
-        return self.drawn or FigureData.of(self.saved.study, self.saved.table)
+        return self.drawn or FigureData.of(self.saved.study, self.saved.shown)
 
     @cached_property
     def reduced(self) -> frozenset[str]:

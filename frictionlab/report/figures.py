@@ -17,6 +17,7 @@ from frictionlab.charts.figures import OTHER_FIGURES
 from frictionlab.report.facts import Facts
 from frictionlab.report.question import given_of, is_taken, values_listed
 from frictionlab.report.tables import html, joined_values, setting, symbol_html, unit_html, word_html
+from frictionlab.runner.results import folder_of
 from frictionlab.runner.words import counted
 from frictionlab.values.columns import typeset
 from frictionlab.values.quantities import Written
@@ -47,7 +48,7 @@ def pictures(run: Facts) -> list[Picture]:
     """
     data, attractors = run.figures, run.saved.attractors
     several = {} if attractors is None else bifurcations(data.shown(attractors))
-    drawn = {file.stem for file in (run.saved.folder / "figures").glob("*")}
+    drawn = {file.stem for file in (folder_of(run.saved) / "figures").glob("*")}
     expected = sorted(data.columns, key=data.rank)[:1]
     names = sorted({*expected, *(drawn & {*data.columns, *OTHER_FIGURES, *several})}, key=data.rank)
     of_curves = {*data.columns, "differences"}
@@ -62,7 +63,7 @@ def pictures(run: Facts) -> list[Picture]:
 
 
 def _picture(run: Facts, name: str, caption: Markup, more: str = "", narrow: bool = False) -> Picture:
-    data = address(run.saved.folder / "figures" / name)
+    data = address(folder_of(run.saved) / "figures" / name)
     return Picture(name, data, caption, f"{caption.striptags()}{more}", narrow)
 
 

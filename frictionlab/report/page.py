@@ -27,7 +27,7 @@ from frictionlab.report.shapes import shape_grid
 from frictionlab.report.sources import entries_of, published
 from frictionlab.report.tables import Grid, grid, size
 from frictionlab.runner.folder import write_page
-from frictionlab.runner.saved import Saved
+from frictionlab.runner.results import Results, folder_of
 from frictionlab.runner.words import counted
 from frictionlab.study.written import yaml_text
 from frictionlab.values.printable import with_error
@@ -43,17 +43,17 @@ AGAIN = [
 ]
 
 
-def write_report(saved: Saved, drawn: FigureData | None = None) -> Path:
+def write_report(saved: Results, drawn: FigureData | None = None) -> Path:
     """Write report.html into the folder of a run; where it is. drawn: what its figures were drawn of, if they were.
 
     Raises SaveError.
     """
-    file = saved.folder / "report.html"
+    file = folder_of(saved) / "report.html"
     write_page(file, report(saved, drawn))
     return file
 
 
-def report(saved: Saved, drawn: FigureData | None = None) -> str:
+def report(saved: Results, drawn: FigureData | None = None) -> str:
     """The page of a run."""
     run = Facts(saved, drawn)
     parts = _head(run) | _asked(saved) | _found(run) | _last(run)
@@ -119,7 +119,7 @@ def wall(seconds: float) -> str:
     return f"{whole // 60} min {whole % 60} s"
 
 
-def _asked(saved: Saved) -> dict[str, Any]:
+def _asked(saved: Results) -> dict[str, Any]:
     study = saved.study
     return {
         "scene_sentence": question.scene_sentences(study),
@@ -140,7 +140,7 @@ def _asked(saved: Saved) -> dict[str, Any]:
 
 
 def _found(run: Facts) -> dict[str, Any]:
-    verdicts, onsets = run.saved.verdicts, run.saved.onsets
+    verdicts, onsets = run.saved.verdicts, run.saved.shown_onsets
     passed = sum(verdict.passed for verdict in verdicts)
     return {
         "curves": findings.curves_grid(run),
@@ -172,7 +172,7 @@ def _last(run: Facts) -> dict[str, Any]:
     }
 
 
-def _versions(saved: Saved) -> Grid:
+def _versions(saved: Results) -> Grid:
     account = saved.account
     own = {name: account.get(name) for name in ("frictionlab", "python", "platform")}
     rows = [[name, str(value)] for name, value in (own | account["packages"]).items() if value]
@@ -192,14 +192,14 @@ def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
     return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
 
 
-def write_index(folder: Path, runs: Sequence[Saved]) -> Path:
+def write_index(folder: Path, runs: Sequence[Results]) -> Path:
     """Write the index.html of runs in folders below this one; where it is. Raises SaveError."""
     file = folder / "index.html"
     write_page(file, index(folder, runs))
     return file
 
 
-def index(folder: Path, runs: Sequence[Saved]) -> str:
+def index(folder: Path, runs: Sequence[Results]) -> str:
     """The page of a folder of studies."""
     entries = [_entry(folder, run) for run in runs]
     counts = sum((Counter(run.counts) for run in runs), Counter())
@@ -215,10 +215,11 @@ def index(folder: Path, runs: Sequence[Saved]) -> str:
     )
 
 
-def _entry(folder: Path, run: Saved) -> dict[str, Any]:
+def _entry(folder: Path, run: Results) -> dict[str, Any]:
     """A study's row."""
-    name, passed = run.folder.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
-    picture = address(run.folder / "figures" / "mean_friction")
+    own = folder_of(run)
+    name, passed = own.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
+    picture = address(own / "figures" / "mean_friction")
     return {
         "name": name,
         "title": run.title,

@@ -14,18 +14,18 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from frictionlab.runner.saved import Saved
+from frictionlab.runner.results import Results
 from frictionlab.study import registry
 from frictionlab.study.bibliography import Publication, publications, unpublished_source
 from frictionlab.study.parts import LawChoice
 
 
-def bibtex(runs: Sequence[Saved]) -> str:
+def bibtex(runs: Sequence[Results]) -> str:
     """One entry for each publication, under a comment that says what used it; keys differ."""
     return entries_of([(run, sources(run)) for run in runs])
 
 
-def entries_of(runs: Sequence[tuple[Saved, Sequence[Cited]]]) -> str:
+def entries_of(runs: Sequence[tuple[Results, Sequence[Cited]]]) -> str:
     """The same of runs with what they cite."""
     users: dict[Publication, list[str]] = {}
     for run, cited in runs:
@@ -111,9 +111,9 @@ class Cited(NamedTuple):
     references: list[Publication]
 
 
-def sources(saved: Saved) -> list[Cited]:
+def sources(saved: Results) -> list[Cited]:
     """The study's source, then those of its laws, then those of its methods, each where it gave a number."""
-    study, table = saved.study, saved.table
+    study, table = saved.study, saved.shown
     found = table[table["mean_friction"].notna() | (table["status"] == "not_unique")]
     laws = {law.kind: law for law in study.laws if law.kind in set(found["kind"])}
     methods = {choice.name: "" for choice in study.methods if choice.label in set(found["method"])}

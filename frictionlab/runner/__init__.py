@@ -1,1 +1,1 @@
-"""Runs a study: chunks of scenes, workers, progress, and the folder of results."""
+"""Runs of a study: its pieces, their store, workers, progress, tables and the folder of results."""

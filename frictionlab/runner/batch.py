@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.runner.api import run_folder
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.curve_loads import speeds_to_add
 from frictionlab.runner.files import FolderError, check_free
-from frictionlab.runner.folder import check_page
+from frictionlab.runner.folder import check_page, run_folder
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import registry
 from frictionlab.study.grid import StudyCurve

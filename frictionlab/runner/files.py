@@ -8,7 +8,6 @@ One run at a time in a folder: a lock that the system drops with the process tha
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import os
 import re
 from collections.abc import Iterator
@@ -37,7 +36,7 @@ def not_written(path: Path, problem: OSError) -> FolderError | SaveError:
 
 
 class NoScheduler(Exception):
-    """There is no cluster to send chunks to; the message says why."""
+    """There is no cluster to send pieces to; the message says why."""
 
 
 _TEMPORARY = re.compile(r"\.(?:.+\.(?:csv|html|json|parquet|py|yaml))\.(?P<process>\d+)")
@@ -91,18 +90,6 @@ def _is_running(process: int) -> bool:
     except OSError:  # it is somebody else's
         return True
     return True
-
-
-def stamp(content: bytes) -> dict[str, Any]:
-    """Length and SHA-256 of a file, as an account holds them."""
-    return {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
-
-
-def stamp_of_file(path: Path) -> dict[str, Any]:
-    """The stamp of what a file holds, which need not fit into memory. Raises OSError."""
-    with path.open("rb") as file:
-        checksum = hashlib.file_digest(file, "sha256").hexdigest()
-        return {"bytes": file.tell(), "sha256": checksum}
 
 
 MARK_FILE = ".running"

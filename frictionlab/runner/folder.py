@@ -3,32 +3,27 @@
 from __future__ import annotations
 
 import errno
-import json
+import hashlib
 import os
-import secrets
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
-import pyarrow.parquet as pq
 
-from frictionlab.laws.faults import INTERNAL, MARK
+from frictionlab import __version__
 from frictionlab.runner.arguments import Existing
-from frictionlab.runner.curve_table import CURVE_TEXT
 from frictionlab.runner.files import (
     FolderError,
     SaveError,
     remove_leftovers,
-    stamp,
-    stamp_of_file,
     write_whole,
 )
-from frictionlab.runner.folder_files import FolderFiles, machine_and_versions, read_parquet
-from frictionlab.study.study import LAW_COPIES
+from frictionlab.runner.folder_files import FolderFiles, machine_and_versions
+from frictionlab.runner.store import code_digest
+from frictionlab.study.study import LAW_COPIES, Study
 from frictionlab.study.written import yaml_text
 from frictionlab.values.printable import printable
 
@@ -38,7 +33,7 @@ MOST_DIFFERENCES = 2
 SHOWN = 72
 """Letters shown of such a line."""
 SOLVER, ASKED = "solver", "asked"
-"""Where a saved table holds the digest of the code that found it, and of what was asked for beside the numbers."""
+"""Where an account holds the digest of the code that found the numbers, and of what was asked for beside them."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +41,8 @@ class Identity:
     """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
 
     file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
-    law_texts: its law files, by their names in the folder. marks: what its tables are marked with, a digest of all
-    code that finds the numbers (``SOLVER``), and one of columns, order of rows and what is kept beside (``ASKED``).
+    law_texts: its law files, by their names in the folder. marks: a digest of all code that finds the numbers
+    (``SOLVER``), and one of columns, order of rows and what is kept beside (``ASKED``).
     """
 
     study: dict[str, Any]
@@ -136,55 +131,9 @@ class RunFolder(FolderFiles):
         laws = [law for law, code in self.identity.code.items() if there.get(law, code) != code]
         return [f"  the code of law '{law}' was edited since" for law in laws]
 
-    def earlier(self, existing: Existing) -> pd.DataFrame | None:
-        """The table of an earlier run of this study, without the points to try again; None without an intact one.
-
-        Those are the points that failed by a defect, and all that failed where the code that finds numbers is
-        another. Raises FolderError.
-        """
-        table = self._earlier(self.table, existing)
-        if table is None or not {"status", "reason"} <= set(table):
-            return table
-        again = table["status"] == "failed"
-        if table.attrs.get(SOLVER) == self.identity.marks.get(SOLVER):
-            again &= table["reason"].astype("str").str.startswith((INTERNAL, MARK))
-        return table[~again]
-
-    def earlier_orbits(self, existing: Existing) -> pd.DataFrame | None:
-        """The orbits kept by an earlier run of this study; None where they are not there or damaged."""
-        return self._earlier(self.orbits_file, existing)
-
-    def earlier_text(self, file: Path, existing: Existing) -> pd.DataFrame | None:
-        """The table that an earlier run of this very study file wrote as text; None where missing or damaged."""
-        try:
-            same = self.study_file.read_text(encoding="utf-8") == self.identity.text
-        except (OSError, ValueError):
-            return None
-        return self.intact_text(file) if same and existing == "reuse" else None
-
-    def intact_text(self, file: Path) -> pd.DataFrame | None:
-        """A table that an earlier run wrote as text; None without an intact one."""
-        return self.read_text(file) if file.name in self.stamps() and not self.damage(file.name) else None
-
-    def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
-        if existing == "replace" or not path.exists():
-            return None
-        wrong = self.damage(path.name)
-        if wrong.startswith("cannot"):
-            raise FolderError(f"{path} {wrong}; {REMEDY}")
-        return None if wrong else read_parquet(path)
-
     def damaged(self) -> list[str]:
-        """What is wrong with the files of an earlier run of this study, and what the next run does about it."""
-        if not self.account_file.exists():
-            return []
-        what = {self.table.name: "its points are", self.orbits_file.name: "its points are"}
-        found = {name: self.damage(name) for name in self.stamps()}
-        return [
-            f"{self.path / name} {wrong}; {what.get(name, 'it is')} made again"
-            for name, wrong in found.items()
-            if wrong
-        ]
+        """Return what is wrong with the files of an earlier run of this study; the next run makes them again."""
+        return [f"{self.path / name} {wrong}; it is made again" for name, wrong in self.damage().items()]
 
     def open(self, existing: Existing) -> None:
         """Create the folder; ``replace`` removes the results in it. Raises FolderError, SaveError."""
@@ -208,10 +157,7 @@ class RunFolder(FolderFiles):
 
     def describe(self, runs: dict[str, Any], done: bool = False) -> None:
         """Write study.yaml and provenance.json. done: all files are as they stay. Raises SaveError."""
-        there = [path for path in self.tables if path.exists()]
-        stamps = {path.name: stamp_of_file(path) for path in there} if done else self.stamps()
         copies = {name: law.encode() for name, law in self.identity.law_texts.items()}
-        laws = {name: stamp(law) for name, law in copies.items()}
         pages: dict[str, Any] = {}
         with suppress(FolderError):
             pages = self.account().get("pages", {})
@@ -221,12 +167,12 @@ class RunFolder(FolderFiles):
             "frictionlab": self.identity.version,
             "study": self.identity.file,
             "digest": self.identity.digest,
+            "marks": dict(self.identity.marks),
             "code": dict(self.identity.code),
             "plugins": list(self.identity.law_texts),
-            "unknown_code": self.unknown_code,
             **runs,
             **machine_and_versions(),
-            "files": {name: [known] for name, known in {**stamps, **laws}.items()},
+            **(self.stamps() if done else {"table": "", "files": {}}),
             "pages": pages,
         }
         # provenance.json first: a study.yaml without it is treated as a user's own file.
@@ -235,33 +181,31 @@ class RunFolder(FolderFiles):
             write_whole(self.path / name, law)
         write_whole(self.study_file, self.identity.text.encode())
 
-    @property
-    def unknown_code(self) -> str:
-        """What stands for code that is not known in the names of kept chunks: another in every folder."""
-        found = None
-        with suppress(FolderError):
-            found = self.account().get("unknown_code")
-        return str(found or secrets.token_hex(16))
+    def add_text(self, path: Path, table: pd.DataFrame) -> None:
+        """Write a table that is made once all others are there, and enter it in the account. Raises SaveError."""
+        self.save_text(path, table)
+        with suppress(FolderError):  # somebody took the account away
+            self.write_account(self.account() | self.stamps())
 
     def previous_runs(self) -> list[dict[str, Any]]:
-        """When and how long earlier runs of this study worked in this folder."""
+        """Return when and how long earlier runs of this study worked in this folder."""
         return list(self.account().get("runs", [])) if self.table.exists() else []
 
-    def counts(self) -> dict[str, int]:
-        """How many rows of an earlier run have each status. Raises FolderError."""
-        return dict(self.account().get("counts", {}))
+    def is_whole(self, as_csv: bool, kept: Collection[Path] = ()) -> bool:
+        """Check that all that this run would write is there as it was written, by the same code and without a gap.
 
-    def is_whole(self, as_csv: bool) -> bool:
-        """Whether all that this run would write is there as it was written, by the same code and without a gap."""
-        known = self.stamps()
-        wanted = {self.table.name, *([self.csv_file.name] if as_csv else [])}
-        if not wanted <= known.keys() or any(map(self.damage, known)):
+        kept: files that it writes beside the table.
+        """
+        try:
+            account = self.account()
+        except FolderError:
             return False
-        counts = self.counts()
+        wanted = {self.table.name, *(path.name for path in kept), *([self.csv_file.name] if as_csv else [])}
         return (
-            bool(counts)
-            and not {"killed", "failed"} & counts.keys()
-            and marks_of_file(self.table) == dict(self.identity.marks)
+            wanted <= account["files"].keys()
+            and not {"killed", "failed"} & account["counts"].keys()
+            and account.get("marks") == dict(self.identity.marks)
+            and not self.damage()
         )
 
     def remove_texts(self) -> None:
@@ -272,23 +216,18 @@ class RunFolder(FolderFiles):
             except OSError as problem:
                 raise SaveError(f"cannot replace {path}: {problem.strerror}") from problem
 
-    def read_curves(self) -> pd.DataFrame:
-        """The table of curves of an earlier run; empty where it has none."""
-        found = self.intact_text(self.curves_file)
-        words = {name: pd.StringDtype(na_value=np.nan) for name in CURVE_TEXT}
-        return pd.DataFrame() if found is None else found.astype(words)
+
+def run_folder(study: Study, out: Path) -> RunFolder:
+    """Return the output folder of a study."""
+    file = study.path.name if study.path is not None else None
+    told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
+    kept = study.keep_orbit, study.keep_harmonics, study.keep_attractors
+    asked = repr((list(study.sweep), kept, sorted(study.selected()), *sorted(study.boundaries.items())))
+    marks = {SOLVER: code_digest(study), ASKED: hashlib.sha256(asked.encode()).hexdigest()}
+    return RunFolder(out, Identity(*told, marks=marks))
 
 
 REMEDY = "choose another folder with -o, or replace what is there with --force"
-
-
-def marks_of_file(path: Path) -> dict[str, str]:
-    """What a table is marked with; nothing for what is no table."""
-    try:
-        with path.open("rb") as opened:
-            return dict(json.loads(pq.read_schema(opened).metadata[b"pandas"]).get("attributes", {}))
-    except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
-        return {}
 
 
 def _brief(line: str, others: Sequence[str]) -> str:

@@ -1,11 +1,11 @@
-"""The files in the folder of a run, and its account, which knows them by length and checksum.
+"""Files in the folder of a run, and its account, which knows the table by its checksum and all by their length.
 
 The machine and the versions of packages with which numbers are made.
 """
 
 from __future__ import annotations
 
-import io
+import hashlib
 import json
 import os
 import platform
@@ -19,7 +19,8 @@ from typing import Any
 import pandas as pd
 
 from frictionlab.runner.csv_text import as_csv
-from frictionlab.runner.files import FolderError, stamp_of_file, write_whole
+from frictionlab.runner.files import FolderError, write_whole
+from frictionlab.study.study import LAW_COPIES
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")
 
@@ -55,12 +56,12 @@ def _version(name: str) -> str | None:
         return None
 
 
-Stamp = dict[str, Any]
-"""Length and checksum of a file."""
+ACCOUNT = {"expect": [], "runs": [], "packages": {}, "code": {}, "files": {}, "counts": {}, "table": ""}
+"""What every provenance.json has."""
 
 
 class FolderFiles:
-    """The files of a run by what they hold. tables: those that are read again."""
+    """Files of a run by what they hold. tables: those that are read again."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -73,18 +74,15 @@ class FolderFiles:
         self.tables = [self.table, self.orbits_file, *self.texts]
 
     def account(self) -> dict[str, Any]:
-        """What provenance.json says. Raises FolderError where it is not the account of a run."""
+        """Return what provenance.json says. Raises FolderError where it is not the account of a run."""
         try:
-            told = json.loads(self.account_file.read_text(encoding="utf-8"))
-            whole = {"expect": [], "runs": [], "packages": {}, "code": {}, "files": {}} | told
+            whole = ACCOUNT | json.loads(self.account_file.read_text(encoding="utf-8"))
             sound = (
                 all(isinstance(each["sentence"], str) and "passed" in each for each in whole["expect"])
                 and all(isinstance(run["seconds"], float | int) for run in whole["runs"])
-                and all(isinstance(whole[name], dict) for name in ("packages", "code", "files"))
-                and all(isinstance(known[-1]["bytes"], int) for known in whole["files"].values())
-                and all("sha256" in known[-1] for known in whole["files"].values())
+                and all(isinstance(whole[name], dict) for name in ("packages", "code", "files", "counts"))
             )
-        except (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError):
+        except (OSError, ValueError, TypeError, KeyError):
             sound = False
         if not sound:
             what = f"{self.account_file} is not the account of a run; run the study again"
@@ -95,43 +93,31 @@ class FolderFiles:
         """Write provenance.json. Raises SaveError."""
         write_whole(self.account_file, (json.dumps(account, indent=2) + "\n").encode())
 
-    def stamps(self) -> dict[str, Stamp]:
-        """By file, what it was written with; nothing where that is not known."""
+    def stamps(self) -> dict[str, Any]:
+        """Return the checksum of the table, and how long its other files are, as an account holds them."""
+        files = [*self.tables, *(self.path / LAW_COPIES).glob("*.py")]
+        there = {
+            path.relative_to(self.path).as_posix(): path.stat().st_size for path in files if path.exists()
+        }
+        return {"table": checksum(self.table) if self.table.exists() else "", "files": there}
+
+    def damage(self) -> dict[str, str]:
+        """Return what is wrong with files that a run wrote, by their names."""
         with suppress(FolderError):
-            return {name: known[-1] for name, known in self.account()["files"].items()}
+            account = self.account()
+            wrong = {name: _wrong_size(self.path / name, size) for name, size in account["files"].items()}
+            name = self.table.name
+            if not wrong.get(name) and account["table"] and checksum(self.table) != account["table"]:
+                wrong[name] = "is damaged: its bytes are not those that were written"
+            return {name: told for name, told in wrong.items() if told}
         return {}
-
-    def know_only(self, paths: Iterable[Path] = (), new: Path | None = None) -> None:
-        """Of the tables of a run know these and a new one: a file that is about to be replaced is not known."""
-        names = {path.name for path in paths if path.exists()}
-        kept = {name: [known] for name, known in self.stamps().items() if name in names or "/" in name}
-        files = kept | ({} if new is None else {new.name: [stamp_of_file(new)]})
-        with suppress(FolderError):  # somebody took the account away; the end of the run writes it again
-            self.write_account(self.account() | {"files": files})
-
-    def damage(self, name: str) -> str:
-        """What is wrong with a file; '' for an intact one."""
-        path, known = self.path / name, self.stamps().get(name)
-        try:
-            if known is None:  # written before files had stamps, or by a run that was killed then
-                torn = path.suffix == ".parquet" and path.exists() and read_parquet(path) is None
-                return "is damaged: it is no table" if torn else ""
-            if not path.exists():
-                return "is missing"
-            found = stamp_of_file(path)
-        except OSError as problem:
-            return f"cannot be read ({problem.strerror})"
-        if found["bytes"] != known["bytes"]:
-            return f"is damaged: it has {found['bytes']} bytes, and {known['bytes']} were written"
-        return "" if found == known else "is damaged: its bytes are not those that were written"
 
     def save_text(self, path: Path, table: pd.DataFrame) -> None:
         """Write a table as text, floats in shortest round-trip form. Raises SaveError."""
         write_whole(path, as_csv(table))
-        self.know_only(self.tables, path)
 
     def read_text(self, path: Path) -> pd.DataFrame | None:
-        """A table that an earlier run wrote as text; None where there is none. Raises FolderError."""
+        """Return a table that was written as text; None where there is none. Raises FolderError."""
         try:
             return pd.read_csv(path, dtype={"how": "str"}) if path.exists() else None  # "-1" is a word there
         except pd.errors.EmptyDataError:
@@ -142,14 +128,26 @@ class FolderFiles:
             raise FolderError(f"{told}: {rerun(self.path)} --force") from problem
 
 
-def rerun(folder: Path, study: str = "STUDY") -> str:
-    """The command that runs a study into a folder."""
-    return f"frictionlab run {study} -o {shlex.quote(str(folder))}"
-
-
-def read_parquet(path: Path) -> pd.DataFrame | None:
-    """The table of a file; None for one that holds none."""
+def _wrong_size(path: Path, size: int) -> str:
+    """Return what is wrong with a file of so many bytes; '' for nothing that its length tells."""
     try:
-        return pd.read_parquet(io.BytesIO(path.read_bytes()))
-    except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
-        return None
+        found = path.stat().st_size
+    except FileNotFoundError:
+        return "is missing"
+    except OSError as problem:
+        return f"cannot be read ({problem.strerror})"
+    return "" if found == size else f"is damaged: it has {found} bytes, and {size} were written"
+
+
+def checksum(path: Path) -> str:
+    """Return the SHA-256 of a file, which need not fit into memory; '' for one that cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""
+
+
+def rerun(folder: Path, study: str = "STUDY") -> str:
+    """Return the command that runs a study into a folder."""
+    return f"frictionlab run {study} -o {shlex.quote(str(folder))}"

@@ -1,4 +1,4 @@
-"""The table of a run, gathered from the answers to its chunks: in one piece, or piece by piece where it is long.
+"""Table of a run, gathered from the answers to its pieces, block by block.
 
 A long table for people: of its curves so many, of each so many points, and some of the points that are not ok.
 """
@@ -127,7 +127,7 @@ class GatheredTable:
         asked = {*OF_SHAPE, *ALWAYS} & solving.task.columns
         for block in solving.blocks:
             first = min(curves[place].rows.start for place in block.curves)
-            tell(first, solving.points)
+            tell(first, solving.points, math.nan, "")
             given, answers = inputs.of(block.curves), solving.answers(block)
             table = result_frame(answers, given, names)
             files.add_rows(table)
@@ -141,10 +141,13 @@ class GatheredTable:
                 in_order = [*orbit_names, *(name for name in orbits if name not in orbit_names)]
                 self._keep(self._orbits, files.add_orbits, orbits.reindex(columns=in_order))
             if solving.task.harmonics:
-                self._keep(self._harmonics, files.add_harmonics, harmonic_table(given, answers))
+                harmonics = harmonic_table(given, answers)
+                self._keep(self._harmonics, files.add_harmonics, harmonics)
             self._states.append(states_table(given, answers))
             read = table.iloc[:0] if stopped else result_frame(answers, given, asked)
             self._curves.append(curve_table(read, laws, reduced))
+        if solving.task.harmonics and not files.has_harmonics:
+            files.add_harmonics(harmonics)  # the names of its columns
 
     def _keep(
         self, held: list[pd.DataFrame], write: Callable[[pd.DataFrame], None], rows: pd.DataFrame

@@ -44,7 +44,8 @@ def numbers_of(answers: pa.Table, name: str) -> Floats:
     """Return a column of numbers; NaN where there is none."""
     if name not in answers.column_names:
         return np.full(len(answers), np.nan)
-    return np.array(answers[name], float)
+    found: Floats = answers[name].to_numpy().copy()  # else nobody may write into the table
+    return found
 
 
 def words_of(answers: pa.Table, name: str) -> pd.Series:

@@ -70,7 +70,7 @@ def prices(curves: Sequence[StudyCurve], task: Task, tell: Progress = silent) ->
         kinds.setdefault(each.curve.labels, []).append(each)
     samples = {kind: _Sample(of_it, task) for kind, of_it in kinds.items()}
     for done, sample in enumerate(samples.values()):
-        tell(done, len(samples), math.nan)
+        tell(done, len(samples), math.nan, "")
         sample.solve()
     solved = [sample for sample in samples.values() if sample.measured]
     usual = sum(one.rate * one.points for one in solved) / max(1, sum(one.points for one in solved))

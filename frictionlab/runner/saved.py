@@ -1,15 +1,13 @@
-"""A saved run: its study, table and provenance, read from its folder. Nothing is computed.
-
-A run that was solved in memory, written as one that was solved into a folder.
-"""
+"""Runs in their folders: read as they were written, nothing computed; runs in memory, written into one."""
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, replace
 from datetime import UTC, datetime, timedelta
-from functools import cached_property
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -18,18 +16,26 @@ import numpy as np
 import pandas as pd
 
 from frictionlab import __version__
-from frictionlab.runner.api import run_folder
+from frictionlab.runner.curve_table import CURVE_TEXT
 from frictionlab.runner.expectations import Verdict
 from frictionlab.runner.files import FolderError, alone_in
+from frictionlab.runner.folder import run_folder
 from frictionlab.runner.folder_files import FolderFiles, rerun
 from frictionlab.runner.gathering import LONG_TABLE, shown_rows, thinned
-from frictionlab.runner.run import Run
-from frictionlab.runner.table import status_counts, whole
-from frictionlab.runner.table_files import TableFiles, read_pieces, read_whole, rows_of_file
+from frictionlab.runner.results import Reader, Results
+from frictionlab.runner.table import status_counts
+from frictionlab.runner.table_files import (
+    TableFiles,
+    read_columns_of_file,
+    read_head,
+    read_pieces,
+    read_whole,
+    rows_of_file,
+)
 from frictionlab.study.grid import grid_size
 from frictionlab.study.load import read_back
 from frictionlab.study.study import Study
-from frictionlab.values.columns import ALWAYS, INPUTS, RESULTS, TEXT, belt_speed
+from frictionlab.values.columns import ALWAYS, BELT_SPEEDS, INPUTS, RESULTS, TEXT, belt_speed
 from frictionlab.values.notes import StudyError
 
 WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
@@ -39,81 +45,8 @@ MOST_NAMED = 3
 """Runs named to somebody who gave the folder around them."""
 
 
-@dataclass(frozen=True)
-class Saved:
-    """A run in its folder. account: provenance.json; curves, onsets: of curves.csv and onsets.csv, None without one.
-
-    table: of a long one the rows that are shown; ``rows`` is then the number of all.
-    damaged: what is wrong with files that a report does without, and the command that mends them.
-    """
-
-    folder: Path
-    study: Study
-    table: pd.DataFrame
-    curves: pd.DataFrame | None
-    account: dict[str, Any]
-    damaged: tuple[str, ...] = ()
-    rows: int | None = None
-
-    @cached_property
-    def onsets(self) -> pd.DataFrame | None:
-        """onsets.csv; None where there is none. Raises FolderError."""
-        return self._read("onsets.csv")
-
-    @cached_property
-    def boundaries(self) -> pd.DataFrame | None:
-        """boundaries.csv; None where there is none. Raises FolderError."""
-        return self._read("boundaries.csv")
-
-    @cached_property
-    def attractors(self) -> pd.DataFrame | None:
-        """attractors.csv; None where there is none. Raises FolderError."""
-        return self._read("attractors.csv")
-
-    @cached_property
-    def harmonics(self) -> pd.DataFrame | None:
-        """harmonics.csv; None where there is none. Raises FolderError."""
-        return self._read("harmonics.csv")
-
-    def _read(self, name: str) -> pd.DataFrame | None:
-        return FolderFiles(self.folder).read_text(self.folder / name)
-
-    def orbits_of(self, rows: Sequence[int]) -> pd.DataFrame | None:
-        """The kept orbits of these rows; None where none are kept, or their file is damaged."""
-        file = self.folder / "orbits.parquet"
-        if not file.exists() or any(str(file) in told for told in self.damaged):
-            return None
-        return pd.read_parquet(file, filters=[("row", "in", list(rows))])
-
-    @property
-    def size(self) -> int:
-        """How many rows the table has."""
-        return len(self.table) if self.rows is None else self.rows
-
-    @property
-    def title(self) -> str:
-        """The study's title, else the name of its file, else of the folder."""
-        file = Path(str(self.account.get("study") or "")).stem
-        return self.study.title or file or self.folder.absolute().name
-
-    @property
-    def verdicts(self) -> list[Verdict]:
-        """What was expected and whether it is so; empty for an interrupted run, which is not judged."""
-        return [Verdict(bool(each["passed"]), str(each["sentence"])) for each in self.account["expect"]]
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """How many rows have each status, the commonest first."""
-        return status_counts(self.table) if self.rows is None else dict(self.account["counts"])
-
-    @property
-    def seconds(self) -> float:
-        """Wall time of all runs that worked in the folder [s]."""
-        return float(sum(run["seconds"] for run in self.account["runs"]))
-
-
-def read_saved(folder: Path) -> Saved:
-    """The run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
+def load(folder: Path) -> Results:
+    """Return the run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
     _check_is_a_run(folder)
     files = FolderFiles(folder)
     account = files.account()
@@ -121,30 +54,67 @@ def read_saved(folder: Path) -> Saved:
     wrong = _damaged(files, account, study)
     for name in REPORT_FILES & wrong.keys():
         raise FolderError(wrong[name])
-    table = _table(folder, study)
-    study = _with_chosen_speeds(study, table)
-    rows = rows_of_file(folder / "results.parquet")
-    long = rows if rows > LONG_TABLE else None
-    saved = Saved(
-        folder, study, whole(table), files.read_text(files.curves_file), account, tuple(wrong.values()), long
-    )
-    _check_belongs_together(saved)
-    return saved
+    with _readable(files.table):
+        rows, head = rows_of_file(files.table), read_head(files.table)
+        if told := _wrong(head, rows, study):
+            raise FolderError(f"{files.table} is not a result table: {told}; {_remedy(folder)}")
+        study = _with_chosen_speeds(study, files.table)
+        _check_belongs_together(folder, rows, study, account)
+        return read_folder(files, study, damaged=tuple(wrong.values()))
 
 
-def saved_as(run: Run) -> Saved:
-    """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
-    assert run.folder is not None
-    files, long = FolderFiles(run.folder), None if run.shown is None else run.size
-    return Saved(
-        run.folder,
-        run.study,
-        whole(run.to_show),
-        files.read_text(files.curves_file),
-        files.account(),
-        (),
-        long,
-    )
+@contextmanager
+def _readable(file: Path) -> Iterator[None]:
+    """Raise FolderError in place of whatever arrow raises where it stumbles over a damaged file."""
+    try:
+        yield
+    except (FolderError, StudyError):
+        raise
+    except Exception as problem:
+        reason = str(problem).partition("\n")[0]
+        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(file.parent)}") from problem
+
+
+def read_folder(
+    files: FolderFiles, study: Study, shown: pd.DataFrame | None = None, damaged: tuple[str, ...] = ()
+) -> Results:
+    """Return the results that a folder holds.
+
+    shown: of a long table the rows that figures show, where they are known. Raises FolderError.
+    """
+    account = files.account()
+    table = None if rows_of_file(files.table) > LONG_TABLE else read_whole(files.table)
+    study = _with_chosen_speeds(study, files.table)
+    if table is None and shown is None:
+        shown = thinned(read_pieces(files.table), shown_rows(study))
+    orbits_are_damaged = any(str(files.orbits_file) in told for told in damaged)
+    readers: dict[str, Reader] = {
+        "table": lambda: read_whole(files.table) if table is None else table,
+        "curves": lambda: _curves(files),
+        "orbits": lambda: None if orbits_are_damaged else _orbits(files),
+        **{name: partial(files.read_text, files.path / f"{name}.csv") for name in BESIDE_THE_TABLE},
+        **({} if shown is None else {"shown": lambda: shown}),
+    }
+    counts = dict(account["counts"]) if table is None else status_counts(table)
+    verdicts = tuple(Verdict(bool(each["passed"]), str(each["sentence"])) for each in account["expect"])
+    return Results(study, readers, counts, verdicts, 0, seconds_of(account), files.path, account, damaged)
+
+
+def seconds_of(account: Mapping[str, Any]) -> float:
+    """Return the wall time of all runs that worked in a folder [s]."""
+    return float(sum(run["seconds"] for run in account["runs"]))
+
+
+BESIDE_THE_TABLE = "onsets", "boundaries", "attractors", "harmonics"
+
+
+def _curves(files: FolderFiles) -> pd.DataFrame | None:
+    found, words = files.read_text(files.curves_file), pd.StringDtype(na_value=np.nan)
+    return None if found is None else found.astype({name: words for name in CURVE_TEXT if name in found})
+
+
+def _orbits(files: FolderFiles) -> pd.DataFrame | None:
+    return read_whole(files.orbits_file) if files.orbits_file.exists() else None
 
 
 def _check_is_a_run(folder: Path) -> None:
@@ -178,39 +148,26 @@ def _study(folder: Path, account: dict[str, Any]) -> Study:
 
 def _damaged(files: FolderFiles, account: dict[str, Any], study: Study) -> dict[str, str]:
     """By file, what is wrong with it and the command that mends it."""
-    wrong = {name: what for name in files.stamps() if (what := files.damage(name))}
+    wrong = files.damage()
     complete = study.digest() == account.get("digest") and not any(name.endswith(".py") for name in wrong)
     command = rerun(files.path, shlex.quote(str(files.study_file)) if complete else "STUDY")
     return {name: f"{files.path / name} {what}; mend it: {command}" for name, what in wrong.items()}
 
 
-def _table(folder: Path, study: Study) -> pd.DataFrame:
-    file = folder / "results.parquet"
-    try:
-        long = rows_of_file(file) > LONG_TABLE and rows_of_file(file) == grid_size(study)
-        rows = shown_rows(study) if long else None
-        table = read_whole(file) if rows is None else thinned(read_pieces(file), rows)
-    except Exception as problem:  # a damaged file makes pyarrow raise whatever it stumbles over
-        reason = str(problem).partition("\n")[0]
-        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
-    if wrong := _wrong(table, study):
-        raise FolderError(f"{file} is not a result table: {wrong}; {_remedy(folder)}")
-    return table
-
-
-def _with_chosen_speeds(study: Study, table: pd.DataFrame) -> Study:
-    """The study with the belt speeds that its run chose: of each scene they rise from the start of their range."""
+def _with_chosen_speeds(study: Study, file: Path) -> Study:
+    """Return the study with the belt speeds that its run chose, rising in each scene from the start of the range."""
     along = study.chosen_range
     if along is None:
         return study
+    table = read_columns_of_file(file, lambda name: name in BELT_SPEEDS)
     speeds = table[belt_speed(table.columns)].to_numpy(dtype=float)
     starts = [*np.flatnonzero(speeds == along.start).tolist(), len(speeds)]
     scenes = pairwise(starts[: len(study.scenes_along) + 1])
     return study.with_speeds([speeds[start:stop].tolist() for start, stop in scenes])
 
 
-def _wrong(table: pd.DataFrame, study: Study) -> str:
-    """What keeps a table from being a result table; nothing for one that is."""
+def _wrong(table: pd.DataFrame, rows: int, study: Study) -> str:
+    """Return what keeps a table from being a result table; '' for nothing. table: its columns alone."""
     asked = INPUTS.keys() | (ALWAYS if study.columns is None else study.selected())
     missing = [name for name in [*INPUTS, *RESULTS] if name in asked and name not in table]
     if missing:
@@ -218,20 +175,20 @@ def _wrong(table: pd.DataFrame, study: Study) -> str:
     words = [name for name in RESULTS if name in table and name not in TEXT and table[name].dtype.kind != "f"]
     if words:
         return f"its column {words[0]} does not hold numbers"
-    return "it is empty" if table.empty else ""
+    return "" if rows else "it is empty"
 
 
-def _check_belongs_together(saved: Saved) -> None:
-    """A table beside another study would make a page of lies."""
-    rows, wanted = saved.size, grid_size(saved.study)
-    edited = saved.account.get("digest") != saved.study.digest()
-    if rows != wanted or (edited and saved.account.get("frictionlab") == __version__):
+def _check_belongs_together(folder: Path, rows: int, study: Study, account: Mapping[str, Any]) -> None:
+    """Raise FolderError for a table beside another study: they would make a page of lies."""
+    wanted = grid_size(study)
+    edited = account.get("digest") != study.digest()
+    if rows != wanted or (edited and account.get("frictionlab") == __version__):
         differs = (
             f"it has {wanted} points, the table {rows}" if rows != wanted else "it asks for other numbers"
         )
         raise FolderError(
-            f"{saved.folder}: study.yaml is not the study of results.parquet ({differs}; only title, source, "
-            f"figures and expect may be edited); {_remedy(saved.folder)}"
+            f"{folder}: study.yaml is not the study of results.parquet ({differs}; only title, source, "
+            f"figures and expect may be edited); {_remedy(folder)}"
         )
 
 
@@ -239,33 +196,26 @@ def _remedy(folder: Path, force: bool = True) -> str:
     return f"run the study again: {rerun(folder)}{' --force' if force else ''}"
 
 
-def save_run(done: Run, out: Path, seconds: float) -> Run:
-    """Write table, curves and account of a run that took so long [s]; the same run in its folder.
+def save_run(done: Results, out: Path) -> Results:
+    """Write table, curves and account of a run in memory; return the same run in its folder.
 
     Raises FolderError where it is the folder of another study, SaveError.
     """
     with alone_in(out):
-        return _saved_alone(done, out, seconds)
-
-
-def _saved_alone(done: Run, out: Path, seconds: float) -> Run:
-    folder = run_folder(done.study, out)
-    folder.check("reuse")
-    folder.open("replace")
-    started = datetime.now(UTC) - timedelta(seconds=seconds)
-    told = {"started": started.isoformat(timespec="seconds"), "overrides": [], "found": 0}
-    account = {
-        "counts": done.counts,
-        "expect": [],
-        "runs": [told | {"computed": done.computed, "seconds": seconds}],
-    }
-    folder.describe(account)
-    with TableFiles(folder) as files:
-        files.add_rows(done.table)
-        files.add_orbits(done.orbits)
-        files.add_harmonics(done.harmonics)
-    for file, table in ((folder.curves_file, done.curves), (folder.attractors_file, done.attractors)):
-        if table is not None and not table.empty:
-            folder.save_text(file, table)
-    folder.describe(account, done=True)
-    return replace(done, folder=out)
+        folder = run_folder(done.study, out)
+        folder.check("reuse")
+        folder.open("replace")
+        started = datetime.now(UTC) - timedelta(seconds=done.seconds)
+        told = {"started": started.isoformat(timespec="seconds"), "overrides": [], "found": 0}
+        runs = [told | {"computed": done.computed, "seconds": done.seconds}]
+        account = {"counts": done.counts, "expect": [asdict(each) for each in done.verdicts], "runs": runs}
+        folder.describe(account)
+        with TableFiles(folder) as files:
+            files.add_rows(done.table)
+            files.add_orbits(done.orbits)
+            files.add_harmonics(done.harmonics)
+        for file, table in ((folder.curves_file, done.curves), (folder.attractors_file, done.attractors)):
+            if table is not None and not table.empty:
+                folder.save_text(file, table)
+        folder.describe(account, done=True)
+        return replace(done, folder=out, account=folder.account())

@@ -141,6 +141,8 @@ class Store:
         try:
             with path.open("rb") as file:
                 found = pq.ParquetFile(file, page_checksum_verification=True).read(use_threads=False)
+            if found.schema.metadata.get(_MARK) != _mark(found):
+                raise ValueError("its columns are not those that were written")
         except FileNotFoundError:
             return None
         except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
@@ -171,9 +173,11 @@ class Store:
         path = self._path(key)
         try:
             self._make(path.parent)
+            marked = answers.replace_schema_metadata(
+                {**(answers.schema.metadata or {}), _MARK: _mark(answers)}
+            )
             with written_whole(path) as file:
-                pq.write_table(answers, file, compression="lz4", use_dictionary=False, write_statistics=False,
-                               write_page_checksum=True)  # fmt: skip
+                pq.write_table(marked, file, **_PLAIN)
             self._columns[key] = answers.column_names
         except SaveError:  # the run has the answers, and says so where it cannot save them either
             if self._must_keep:
@@ -215,6 +219,22 @@ class Store:
     def _path(self, key: str) -> Path:
         assert self.folder is not None
         return self.folder / key[:2] / f"{key[2:]}.parquet"
+
+
+_PLAIN = {
+    "compression": "lz4",
+    "use_dictionary": False,
+    "write_statistics": False,
+    "write_page_checksum": True,
+}
+"""How a file is written: quickly, as most are read once."""
+_MARK = b"columns"
+"""Where a file holds a checksum of what parquet has none of: the names and the types of its columns."""
+
+
+def _mark(answers: pa.Table) -> bytes:
+    told = [(each.name, "list" if pa.types.is_list(each.type) else str(each.type)) for each in answers.schema]
+    return hashlib.sha256(repr((len(answers), told)).encode()).hexdigest().encode()
 
 
 def store_of(

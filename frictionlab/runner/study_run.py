@@ -1,4 +1,4 @@
-"""A study to its run: what is left of it solved in chunks, gathered, judged, and written where it has a folder."""
+"""A study to its run: its pieces found or solved, gathered, judged, and written where it has a folder."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, replace
 from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -17,15 +19,16 @@ from frictionlab.runner.chosen_speeds import choose_speeds
 from frictionlab.runner.expectations import Verdict, judge
 from frictionlab.runner.files import SaveError
 from frictionlab.runner.folder import RunFolder
-from frictionlab.runner.gathering import LONG_TABLE, GatheredTable, shown_rows, thinned
+from frictionlab.runner.gathering import LONG_TABLE, GatheredTable, shown_rows
 from frictionlab.runner.more_tables import READ_FOR_ONSETS, attractor_table, onset_table
 from frictionlab.runner.pieces import task_of
 from frictionlab.runner.progress import Meter, Progress, silent
-from frictionlab.runner.run import Run
+from frictionlab.runner.results import Reader, Results
+from frictionlab.runner.saved import read_folder, seconds_of
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.store import Store
 from frictionlab.runner.table import whole
-from frictionlab.runner.table_files import TableFiles, read_columns_of_file, read_pieces, read_whole
+from frictionlab.runner.table_files import TableFiles, read_columns_of_file
 from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.study import registry
 from frictionlab.study.grid import StudyCurve, grid_size
@@ -36,7 +39,7 @@ from frictionlab.values.columns import ALWAYS, INPUTS
 class Interrupted(KeyboardInterrupt):
     """A run was stopped; ``run`` is what it had found, already saved where it has a folder."""
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Results) -> None:
         super().__init__("interrupted")
         self.run = run
 
@@ -44,7 +47,7 @@ class Interrupted(KeyboardInterrupt):
 class UnsavedError(SaveError):
     """A run whose results could not be written; ``run`` holds them."""
 
-    def __init__(self, problem: SaveError, run: Run) -> None:
+    def __init__(self, problem: SaveError, run: Results) -> None:
         super().__init__(str(problem))
         self.run = run
 
@@ -67,66 +70,55 @@ class StudyRun:
         self._started, self._clock = datetime.now(UTC), time.monotonic()
         self._earlier_runs: list[dict[str, Any]] = []
         self._points = self._computed = self._found = 0
-        self._is_idle = False
 
-    def run(self) -> Run:
-        """What came of it. Raises Interrupted or UnsavedError, both with the run; SaveError, FolderError."""
-        if self.folder is not None and self.ways.existing == "reuse":
-            self._earlier_runs = self.folder.previous_runs()
-            if self._is_there():
-                return self._taken_over()
+    def run(self) -> Results:
+        """Return what came of it. Raises Interrupted or UnsavedError, both with the run; SaveError, FolderError."""
         if self.folder is not None:
+            if self.ways.existing == "reuse":
+                self._earlier_runs = self.folder.previous_runs()
+                if self.folder.is_whole(self._as_csv, self._kept_files(self.folder)):
+                    return self._taken_over(self.folder)
             self.folder.open(self.ways.existing)
             self._describe({}, ())
-        solving, stopped = self._solved()
-        return self._with_attractors(self._gathered(solving, stopped), solving)
-
-    # --- what an earlier run left -----------------------------------------------------------------------------------
+        if self.study.chosen_range is None:
+            solving, stopped = self._solve(list(self.study.curves()))
+        else:
+            self.study, solving, stopped = choose_speeds(self.study, self._solve)
+        return self._gathered(solving, stopped)
 
     @property
-    def _is_long(self) -> bool:
-        return self.folder is not None and grid_size(self.study) > LONG_TABLE
+    def _long(self) -> RunFolder | None:
+        """The folder of a table that is too long to be held."""
+        return self.folder if grid_size(self.study) > LONG_TABLE else None
 
     @property
     def _as_csv(self) -> bool:
-        return self.ways.as_csv or not self._is_long
+        return self.ways.as_csv or not self._long
 
-    def _is_there(self) -> bool:
-        """Whether the folder holds all that this run would write."""
-        folder, study = self.folder, self.study
-        assert folder is not None
+    def _kept_files(self, folder: RunFolder) -> list[Path]:
+        study = self.study
         kept = {
             folder.orbits_file: study.keep_orbit,
             folder.harmonics_file: study.keep_harmonics,
             folder.attractors_file: study.keep_attractors,
         }
-        there = all(file.exists() for file, asked in kept.items() if asked is not None)
-        return there and study.chosen_range is None and folder.is_whole(self._as_csv)
+        return [file for file, asked in kept.items() if asked is not None]
 
-    def _taken_over(self) -> Run:
-        """The run as the folder holds it, judged anew."""
-        assert self.folder is not None
-        folder, study, self._is_idle = self.folder, self.study, True
-        shown = thinned(read_pieces(folder.table), shown_rows(study)) if self._is_long else None
-        done = self._read_run(shown, folder.counts(), folder.read_curves())
-        if study.keep_harmonics is not None:
-            done = replace(done, harmonics=folder.intact_text(folder.harmonics_file))
-        if folder.attractors_file.exists():
-            done = replace(done, attractors=folder.intact_text(folder.attractors_file))
-        done = self._judged(done)
-        self._describe(done.counts, done.verdicts, done=True)
-        return done
-
-    # --- solving ----------------------------------------------------------------------------------------------------
-
-    def _solved(self) -> tuple[Solving, bool]:
-        """Solve all that can be solved; return True where that was interrupted. Belt speeds are chosen as it goes."""
-        if self.study.chosen_range is None:
-            return self._solve(list(self.study.curves()))
-        self.study, solving, stopped = choose_speeds(self.study, self._solve)
-        return solving, stopped
+    def _taken_over(self, folder: RunFolder) -> Results:
+        """Return the run as the folder holds it, judged anew; nothing of it is solved."""
+        found = read_folder(folder, self.study)
+        self.study = found.study
+        solving = Solving(list(self.study.curves()), task_of(self.study), self.store, self.study.code)
+        made = self._made(solving, found)
+        found = replace(
+            found, readers={**found.readers, "onsets": made["onsets"], "boundaries": made["boundaries"]}
+        )
+        found = replace(found, verdicts=self._verdicts(found))
+        folder.write_account(folder.account() | {"expect": [asdict(each) for each in found.verdicts]})
+        return replace(found, account=folder.account())
 
     def _solve(self, curves: list[StudyCurve]) -> tuple[Solving, bool]:
+        """Solve all that can be solved; return True where that was interrupted."""
         before, tell = self._points, self.ways.progress
         with workforce(self.ways.executor) as force:
             task = task_of(self.study, limited=force.elsewhere)
@@ -142,35 +134,100 @@ class StudyRun:
 
     # --- gathering --------------------------------------------------------------------------------------------------
 
-    def _gathered(self, solving: Solving, stopped: bool) -> Run:
-        """The run, written and judged. Raises Interrupted or UnsavedError, both with the run."""
+    def _gathered(self, solving: Solving, stopped: bool) -> Results:
+        """Return the run, written and judged. Raises Interrupted or UnsavedError, both with the run."""
         names = solving.columns() if self.study.columns is None else solving.task.columns
-        gathered = GatheredTable(shown_rows(self.study) if self._is_long else None)
-        unsaved = None
+        gathered, problem = GatheredTable(shown_rows(self.study) if self._long else None), None
         try:
             with TableFiles(self.folder, self._as_csv) as files:
                 tell = silent if stopped else self._next_stage("gathering", "points")
                 gathered.gather(solving, files, self._laws, names, stopped, tell)
-            if self.folder is not None and not gathered.curves.empty:
-                self.folder.save_text(self.folder.curves_file, gathered.curves)
-        except SaveError as problem:
-            if self._is_long:
+        except SaveError as unsaved:
+            if self._long:
                 raise
-            unsaved = problem
-        done = self._judged(replace(self._as_run(gathered, stopped), attractors=gathered.states), stopped)
+            problem = unsaved
+        found = self._results(gathered, solving)
         try:
-            if unsaved is None:
-                self._describe(done.counts, done.verdicts, done=True)
-        except SaveError as problem:
-            unsaved = problem
-        if unsaved is not None:
-            raise UnsavedError(unsaved, replace(done, folder=None)) from unsaved
+            found = replace(found, verdicts=() if stopped else self._verdicts(found))
+            attractors = None if stopped else found.attractors
+        except KeyboardInterrupt:
+            stopped = True
+        try:
+            if problem is None:
+                self._write_beside(found, None if stopped else attractors)
+        except SaveError as unsaved:
+            problem = unsaved
+        if problem is not None:
+            raise UnsavedError(problem, replace(found, folder=None)) from problem
+        if self.folder is not None:
+            account = self.folder.account()
+            found = replace(found, account=account, seconds=seconds_of(account))
         if stopped:
-            raise Interrupted(done)
-        return done
+            raise Interrupted(found)
+        return found
 
-    def _next_stage(self, doing: str, things: str) -> Callable[[int, int], None]:
-        """What tells how far it is; only a meter knows of stages beside solving."""
+    def _results(self, gathered: GatheredTable, solving: Solving) -> Results:
+        """Return the results that are held, or are in the files of a long table."""
+        table, curves, folder = gathered.table, gathered.curves, self._long
+        readers: dict[str, Reader] = {
+            "table": lambda: table,
+            "curves": lambda: curves,
+            "orbits": lambda: gathered.orbits,
+            "harmonics": lambda: gathered.harmonics,
+            "attractors": lambda: gathered.states,
+        }
+        if folder is not None:
+            in_files = read_folder(folder, self.study, table).readers
+            readers |= {name: in_files[name] for name in ("table", "shown", "orbits", "harmonics")}
+        seconds, path = time.monotonic() - self._clock, None if self.folder is None else self.folder.path
+        found = Results(self.study, readers, gathered.counts, (), self._computed, seconds, path)
+        return replace(found, readers=readers | self._made(solving, found))
+
+    def _made(self, solving: Solving, found: Results) -> dict[str, Reader]:
+        """Return what makes the tables that are made from all answers, each once, or reads their files."""
+        study, starts = self.study, self.study.keep_attractors
+
+        def onsets() -> pd.DataFrame:
+            return onset_table(study, self._columns(found, READ_FOR_ONSETS))
+
+        makers: dict[str, Callable[[], pd.DataFrame]] = {
+            "onsets": onsets,
+            "boundaries": lambda: boundary_table(study, found.curves, self._laws),
+        }
+        if starts is not None:
+            makers["attractors"] = lambda: attractor_table(solving.curves, study.tolerance, starts)
+        return {name: partial(self._read_or_made, name, solving, make) for name, make in makers.items()}
+
+    def _read_or_made(
+        self, name: str, solving: Solving, make: Callable[[], pd.DataFrame]
+    ) -> pd.DataFrame | None:
+        file = None if self.folder is None else self.folder.path / f"{name}.csv"
+        if self.folder is not None and file is not None and file.exists():
+            return self.folder.read_text(file)
+        if solving.rest:  # what is not solved has no onset
+            return None
+        asked = self.study.keep_attractors, sorted(self.study.boundaries.items())
+        return self.store.derived(solving.key(name, asked), make)
+
+    def _columns(self, found: Results, wanted: Collection[str | None]) -> pd.DataFrame:
+        """Return inputs and these columns of every row."""
+        if self._long is None:
+            return whole(found.table)
+        return read_columns_of_file(
+            self._long.table,
+            lambda name: name in wanted or name in INPUTS or name.startswith(("scene.", "law.")),
+        )
+
+    def _verdicts(self, found: Results) -> tuple[Verdict, ...]:
+        """Return the verdicts on all that is expected, judged on the columns that they speak of."""
+        expect = self.study.expect
+        if not expect:
+            return ()
+        read = self._columns(found, {*ALWAYS, *(each.column for each in expect)})
+        return tuple(judge(each, read, found.curves) for each in expect)
+
+    def _next_stage(self, doing: str, things: str) -> Progress:
+        """Return what tells how far it is; only a meter knows of stages beside solving."""
         tell = self.ways.progress
         if not isinstance(tell, Meter):
             return silent
@@ -181,58 +238,13 @@ class StudyRun:
     def _laws(self) -> registry.Laws:
         return registry.Laws({law.kind: law.law_class for law in self.study.laws})
 
-    def _as_run(self, gathered: GatheredTable, stopped: bool) -> Run:
-        study, table, orbits = self.study, gathered.table, gathered.orbits
-        if self._is_long and self.folder is not None:
-            done = self._read_run(table, gathered.counts, gathered.curves)
-            kept = self.folder.harmonics_file if study.keep_harmonics is not None else None
-            return done if kept is None else replace(done, harmonics=self.folder.read_text(kept))
-        read = table.iloc[:0] if stopped else table
-        return Run(
-            study,
-            lambda: table,
-            lambda: orbits,
-            (),
-            None if self.folder is None else self.folder.path,
-            self._computed,
-            gathered.curves,
-            lambda: onset_table(self.study, read),
-            lambda: boundary_table(
-                study, gathered.curves.iloc[:0] if stopped else gathered.curves, self._laws
-            ),
-            harmonics=None if study.keep_harmonics is None else gathered.harmonics,
-        )
-
-    def _read_run(self, shown: pd.DataFrame | None, counts: dict[str, int], curves: pd.DataFrame) -> Run:
-        """A run whose table stays in its file."""
-        assert self.folder is not None
-        study, table, orbits = self.study, self.folder.table, self.folder.orbits_file
-        return Run(
-            study,
-            lambda: read_whole(table),
-            lambda: read_whole(orbits) if study.keep_orbit is not None and orbits.exists() else None,
-            (),
-            self.folder.path,
-            self._computed,
-            curves,
-            lambda: onset_table(self.study, read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
-            lambda: boundary_table(study, curves, self._laws),
-            shown,
-            counts,
-        )
-
-    def _judged(self, done: Run, stopped: bool = False) -> Run:
-        """The run with its verdicts, judged on the columns that they speak of."""
-        expect = self.study.expect
-        if stopped or not expect:
-            return done
-        table, wanted = self.folder and self.folder.table, {*ALWAYS, *(each.column for each in expect)}
-        read = (
-            read_columns_of_file(table, _is_read_for(wanted))
-            if self._is_long and table
-            else whole(done.table)
-        )
-        return replace(done, verdicts=tuple(judge(each, read, done.curves) for each in expect))
+    def _write_beside(self, found: Results, attractors: pd.DataFrame | None) -> None:
+        """Write curves, attractors and the account. Raises SaveError."""
+        if self.folder is not None and not found.curves.empty:
+            self.folder.save_text(self.folder.curves_file, found.curves)
+        if self.folder is not None and attractors is not None:
+            self.folder.save_text(self.folder.attractors_file, attractors)
+        self._describe(found.counts, found.verdicts, done=True)
 
     def _describe(self, counts: dict[str, int], verdicts: Sequence[Verdict], done: bool = False) -> None:
         """Write what the folder answers and how far it is. Raises SaveError."""
@@ -245,36 +257,5 @@ class StudyRun:
             "found": self._found,
             "seconds": round(time.monotonic() - self._clock, 3),
         }
-        runs = [*self._earlier_runs, *([] if self._is_idle else [this])]
-        self.folder.describe(
-            {"counts": counts, "expect": [asdict(each) for each in verdicts], "runs": runs}, done
-        )
-
-    def _with_attractors(self, done: Run, solving: Solving) -> Run:
-        """The run with its attractors, where the study keeps them, or some points have several.
-
-        Raises Interrupted, UnsavedError.
-        """
-        starts, table = done.study.keep_attractors, done.attractors
-        try:
-            if starts is not None:
-                table = self.store.derived(
-                    solving.key("attractors", starts),
-                    lambda: attractor_table(solving.curves, done.study.tolerance, starts),
-                )
-        except KeyboardInterrupt:
-            raise Interrupted(done) from None
-        if table is None:
-            return done
-        done = replace(done, attractors=table)
-        try:
-            if self.folder is not None:
-                self.folder.save_text(self.folder.attractors_file, table)
-        except SaveError as problem:
-            raise UnsavedError(problem, done) from problem
-        return done
-
-
-def _is_read_for(wanted: Collection[str | None]) -> Callable[[str], bool]:
-    """Whether a column is an input or one of these."""
-    return lambda name: name in wanted or name in INPUTS or name.startswith(("scene.", "law."))
+        runs, expect = [*self._earlier_runs, this], [asdict(each) for each in verdicts]
+        self.folder.describe({"counts": counts, "expect": expect, "runs": runs}, done)

@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 
 from frictionlab.runner.expectations import Verdict
-from frictionlab.runner.run import Run
-from frictionlab.runner.table import swept_inputs, whole
+from frictionlab.runner.results import Results
+from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import counted, in_words
 from frictionlab.scene.as_written import without_unit
 from frictionlab.values.columns import SHOWN_IN, belt_speed
@@ -49,14 +49,14 @@ CURVES_TOLD = 20
 """Largest number of curves that a summary lists, one line each."""
 
 
-def summary(run: Run) -> str:
+def summary(run: Results) -> str:
     """Write the results of a run as text: curves, models, reasons, verdicts, path of the table."""
-    table = in_shown_units(whole(run.to_show), run.study.units)
+    table = in_shown_units(run.shown, run.study.units)
     told = ", ".join(f"{count} {status}" for status, count in run.counts.items())
     parts = [
         [run.study.title] if run.study.title else [],
         [f"{counted(run.size, 'point')}: {told}"],
-        [f"of {counted(len(table), 'point')} spread over them:"] if run.shown is not None else [],
+        [f"of {counted(len(table), 'point')} spread over them:"] if run.is_thinned else [],
         ["", *_curve_lines(table)],
         _model_lines(table),
         _reasons(table),

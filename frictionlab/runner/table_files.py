@@ -57,6 +57,11 @@ class TableFiles:
         if self._folder is not None and harmonics is not None:
             self._add(self._folder.harmonics_file, harmonics, self._add_text)
 
+    @property
+    def has_harmonics(self) -> bool:
+        """True if any were added."""
+        return self._folder is not None and self._folder.harmonics_file in self._open
+
     def _add(self, path: Path, table: pd.DataFrame, write: Callable[[Path, pd.DataFrame], None]) -> None:
         if self._problem is not None:
             return
@@ -67,14 +72,12 @@ class TableFiles:
 
     def _add_parquet(self, path: Path, table: pd.DataFrame) -> None:
         assert self._folder is not None
-        marked = table.copy(deep=False)
-        marked.attrs = self._folder.identity.marks
         writer = self._open.get(path)
         if writer is None:
-            content = pa.Table.from_pandas(marked, _with_text(marked), preserve_index=False)
+            content = pa.Table.from_pandas(table, _with_text(table), preserve_index=False)
             writer = self._open[path] = pq.ParquetWriter(self._opened(path), content.schema)
         else:
-            content = pa.Table.from_pandas(marked, writer.schema, preserve_index=False)
+            content = pa.Table.from_pandas(table, writer.schema, preserve_index=False)
         writer.write_table(content)
 
     def _add_text(self, path: Path, table: pd.DataFrame) -> None:
@@ -102,8 +105,6 @@ class TableFiles:
                 file.close()
             except OSError as full:
                 self._problem = self._problem or SaveError(f"cannot write the table: {full.strerror or full}")
-        if self._begun and self._folder is not None and problem is None:
-            self._folder.know_only()
         for path, temporary in self._begun.items():
             if problem is None:
                 self._add(path, pd.DataFrame(), lambda path, _: os.replace(self._begun[path], path))
@@ -134,6 +135,12 @@ def rows_of_file(file: Path) -> int:
     """How many rows the table of a file has."""
     with file.open("rb") as opened:
         return int(pq.read_metadata(opened).num_rows)
+
+
+def read_head(file: Path) -> pd.DataFrame:
+    """Return a table without its rows."""
+    with file.open("rb") as opened:
+        return pq.read_schema(opened).empty_table().to_pandas()
 
 
 def read_columns_of_file(file: Path, wanted: Callable[[str], bool]) -> pd.DataFrame:

@@ -24,7 +24,7 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.bench import load_bench
 from frictionlab.charts import figures
-from frictionlab.runner import api, execute
+from frictionlab.runner import api, engine
 from frictionlab.runner.files import alone_in
 from frictionlab.study.bibliography import read_bibtex
 from frictionlab.study.load import load_study
@@ -626,7 +626,7 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
     frictionlab: Any, monkeypatch: Any
 ) -> None:
     left = []
-    monkeypatch.setattr(execute, "GRACE", 0.05)
+    monkeypatch.setattr(engine, "GRACE", 0.05)
     monkeypatch.setattr(cli.os, "_exit", left.append)
     monkeypatch.setattr(
         "frictionlab.runner.progress.Meter.__call__", lambda *_: signal.raise_signal(signal.SIGINT)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -12,11 +11,12 @@ import pandas as pd
 import pytest
 from profiles import some
 
+import frictionlab as fl
 from frictionlab.charts.figures import FigureData
 from frictionlab.report.answer import sentences
 from frictionlab.report.facts import Facts
 from frictionlab.runner.expectations import Verdict
-from frictionlab.runner.saved import Saved
+from frictionlab.runner.table import status_counts
 from frictionlab.study.study import Study
 
 SPEED, FREQUENCY = "scene.belt_speed", "scene.drive.frequency"
@@ -43,12 +43,12 @@ def told(
 ) -> list[str]:
     """The three sentences of a run with these rows."""
     table = pd.concat(rows, ignore_index=True)
-    account = {"expect": [{"passed": passed, "sentence": "x"} for passed in verdicts]}
     methods = [SimpleNamespace(label=name, is_reduced=name == "mdsm") for name in ("exact", "mdsm")]
     study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}, methods=methods, in_words=IN_WORDS))
-    saved = Saved(Path(), study, table, pd.DataFrame(curves) if curves else None, account)
+    readers = {"table": lambda: table, "curves": lambda: pd.DataFrame(curves)}
+    judged = tuple(Verdict(passed, "x") for passed in verdicts)
+    saved = fl.Run(study, readers, status_counts(table), judged)
     drawn = cast("FigureData", SimpleNamespace(reference="Coulomb"))
-    assert saved.verdicts == [Verdict(passed, "x") for passed in verdicts]
     return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved, drawn))]
 
 

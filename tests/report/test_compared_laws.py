@@ -21,11 +21,11 @@ SPEEDS = np.linspace(1.0, 58.0, 20).tolist()
 
 
 @pytest.fixture(scope="module")
-def compared() -> fl.Comparison:
+def compared() -> fl.Run:
     return fl.compare(SCENE, LAWS, SPEEDS)
 
 
-def test_numbers_are_those_of_single_curves(compared: fl.Comparison) -> None:
+def test_numbers_are_those_of_single_curves(compared: fl.Run) -> None:
     for label, law in LAWS.items():
         own = compared.table[compared.table["law"] == label]["mean_friction"].to_numpy()
         np.testing.assert_array_equal(own, fl.curve(SCENE, law, SPEEDS)["mean_friction"].to_numpy())
@@ -41,7 +41,7 @@ def test_arrays_have_a_dimension_for_each_input_that_is_swept() -> None:
     np.testing.assert_array_equal(one.loc[{"scene.drive.frequency": 1.5}].to_numpy(), alone.to_numpy())
 
 
-def test_without_xarray_the_extra_is_named(compared: fl.Comparison, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_xarray_the_extra_is_named(compared: fl.Run, monkeypatch: pytest.MonkeyPatch) -> None:
     bring = builtins.__import__
 
     def without(name: str, *rest: Any, **more: Any) -> Any:
@@ -55,7 +55,7 @@ def test_without_xarray_the_extra_is_named(compared: fl.Comparison, monkeypatch:
 
 
 @deep("seconds of reports")
-def test_a_saved_comparison_is_a_run_that_goes_on(compared: fl.Comparison, tmp_path: Path) -> None:
+def test_a_saved_comparison_is_a_run_that_goes_on(compared: fl.Run, tmp_path: Path) -> None:
     folder = compared.save(tmp_path / "run")
     assert (folder / "report.html").exists()
     assert (folder / "figures" / "mean_friction.svg").exists()
@@ -65,23 +65,23 @@ def test_a_saved_comparison_is_a_run_that_goes_on(compared: fl.Comparison, tmp_p
 
 
 @deep("seconds of reports")
-def test_the_report_is_one_file(compared: fl.Comparison, tmp_path: Path) -> None:
+def test_the_report_is_one_file(compared: fl.Run, tmp_path: Path) -> None:
     page = compared.report(tmp_path / "page.html")
     assert "<svg" in page.read_text() or "data:image" in page.read_text()
     assert "<title>page</title>" in page.read_text()
     assert list(tmp_path.iterdir()) == [page]
 
 
-def test_a_notebook_shows_a_row_for_each_curve(compared: fl.Comparison) -> None:
+def test_a_notebook_shows_a_row_for_each_curve(compared: fl.Run) -> None:
     shown = compared._repr_html_()
     assert shown.count("<tr>") == 1 + 2
     assert shown.count("<polyline") == 2
     assert "concave" in shown or "convex" in shown
-    assert repr(compared).startswith("40 points: 40 ok")
+    assert str(compared).startswith("40 points: 40 ok")
 
 
 def test_a_figure_is_handed_over_and_nothing_is_written(
-    compared: fl.Comparison, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    compared: fl.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     figure = compared.plot("differences", width="single", title=False, against="smooth")

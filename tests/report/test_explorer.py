@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from pages import Page, complaints
 
@@ -19,7 +20,6 @@ from frictionlab import cli
 from frictionlab.charts.curves import CurveData, family_of
 from frictionlab.report.explorer import explorer, label, page_scene, run_data
 from frictionlab.runner.files import FolderError
-from frictionlab.runner.saved import Saved, saved_as
 from frictionlab.theory.linear import friction_free_velocity
 
 CHROMIUM = next(
@@ -49,8 +49,8 @@ STUDY: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def saved(tmp_path_factory: pytest.TempPathFactory) -> Saved:
-    return saved_as(fl.run(STUDY, out=tmp_path_factory.mktemp("explored") / "run"))
+def saved(tmp_path_factory: pytest.TempPathFactory) -> fl.Run:
+    return fl.run(STUDY, out=tmp_path_factory.mktemp("explored") / "run")
 
 
 def data_of(text: str) -> Any:
@@ -58,7 +58,12 @@ def data_of(text: str) -> Any:
     return json.loads(held)
 
 
-def test_the_page_needs_nothing_else_and_is_light(saved: Saved) -> None:
+def with_table(saved: fl.Run, table: pd.DataFrame) -> fl.Run:
+    """The run with another table."""
+    return replace(saved, readers={"table": lambda: table})
+
+
+def test_the_page_needs_nothing_else_and_is_light(saved: fl.Run) -> None:
     for text in (explorer(), explorer(saved)):
         assert set(complaints(text)) == OWN
         assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", text)
@@ -66,7 +71,7 @@ def test_the_page_needs_nothing_else_and_is_light(saved: Saved) -> None:
     assert len(explorer().encode()) < 400_000 / 4
 
 
-def test_every_slider_has_words(saved: Saved) -> None:
+def test_every_slider_has_words(saved: fl.Run) -> None:
     page = Page(explorer(saved))
     named = {element.attributes["for"] for element in page.all("label")}
 
@@ -75,7 +80,7 @@ def test_every_slider_has_words(saved: Saved) -> None:
     assert len(page.all("input")) == 8
 
 
-def test_a_run_is_embedded_whole(saved: Saved) -> None:
+def test_a_run_is_embedded_whole(saved: fl.Run) -> None:
     data = data_of(explorer(saved))
 
     assert [quantity["values"] for quantity in data["swept"]] == [[1.0, 2.0], [0.2, 0.3]]
@@ -90,10 +95,10 @@ def test_a_run_is_embedded_whole(saved: Saved) -> None:
     assert {curve["law"]: curve["at"][1] for curve in data["curves"]}["coulomb"] is None
 
 
-def test_what_has_no_number_is_empty_and_has_no_look(saved: Saved) -> None:
+def test_what_has_no_number_is_empty_and_has_no_look(saved: fl.Run) -> None:
     table = saved.table.copy()
     table.loc[table["law"] == "other", ["mean_friction", "error"]] = np.nan
-    data = run_data(Saved(saved.folder, saved.study, table, saved.curves, saved.account))
+    data = run_data(with_table(saved, table))
 
     looks = {(curve["law"], curve["method"]): curve["look"] for curve in data["curves"]}
     assert [looks["coulomb", "exact"], looks["coulomb", "mdsm"]] == [0, 1]
@@ -101,7 +106,7 @@ def test_what_has_no_number_is_empty_and_has_no_look(saved: Saved) -> None:
     assert all(mean is None for curve in data["curves"] if curve["law"] == "other" for mean in curve["mean"])
 
 
-def curve_of(saved: Saved, **changed: Any) -> CurveData:
+def curve_of(saved: fl.Run, **changed: Any) -> CurveData:
     """The first curve of the run with columns changed, or left out where they are None."""
     family = family_of(saved.table)
     assert family is not None
@@ -109,7 +114,7 @@ def curve_of(saved: Saved, **changed: Any) -> CurveData:
     return replace(family.curves[0], rows=family.curves[0].rows.assign(**changed).drop(columns=gone))
 
 
-def test_the_solver_of_the_page_takes_the_scenes_that_are_its_own(saved: Saved) -> None:
+def test_the_solver_of_the_page_takes_the_scenes_that_are_its_own(saved: fl.Run) -> None:
     speed = "scene.belt_speed"
 
     assert page_scene(curve_of(saved), speed) == pytest.approx((1.0, 0.1, 0.4, 0.4, 50.0), rel=1e-14)
@@ -124,12 +129,12 @@ def test_the_solver_of_the_page_takes_the_scenes_that_are_its_own(saved: Saved) 
     assert page_scene(curve_of(saved), "scene.drive.frequency") is None
 
 
-def test_the_sliders_begin_at_the_scene_of_the_run(saved: Saved) -> None:
+def test_the_sliders_begin_at_the_scene_of_the_run(saved: fl.Run) -> None:
     start = {"frequency": 1.0, "damping": 0.1, "friction": 0.4, "belt": 0.6}
 
     assert run_data(saved)["start"] == start
     undamped = saved.table.assign(**{"scene.damping_ratio": 0.0})
-    assert run_data(Saved(saved.folder, saved.study, undamped, saved.curves, saved.account))["start"] is None
+    assert run_data(with_table(saved, undamped))["start"] is None
 
 
 def test_labels_are_words_with_marked_subscripts() -> None:
@@ -138,7 +143,7 @@ def test_labels_are_words_with_marked_subscripts() -> None:
 
 
 def test_the_command_writes_the_page_and_says_where(
-    saved: Saved, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    saved: fl.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
 
@@ -158,8 +163,8 @@ def test_a_page_of_somebody_else_is_not_replaced(tmp_path: Path, capsys: pytest.
     assert page.read_text() == "<h1>Mine</h1>"
 
 
-def test_a_run_without_a_sweep_is_refused_with_the_reason(saved: Saved) -> None:
-    alone = Saved(saved.folder, saved.study, saved.table.iloc[:1], None, saved.account)
+def test_a_run_without_a_sweep_is_refused_with_the_reason(saved: fl.Run) -> None:
+    alone = with_table(saved, saved.table.iloc[:1])
 
     with pytest.raises(FolderError, match="sweeps no number"):
         explorer(alone)
@@ -233,7 +238,7 @@ opened(390);
 
 
 @pytest.fixture(scope="module")
-def opened(saved: Saved, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def opened(saved: fl.Run, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """What the page shows in a browser, before and after its sliders are moved."""
     if CHROMIUM is None:
         pytest.skip(WITHOUT)
@@ -274,7 +279,7 @@ def test_moving_a_slider_changes_the_numbers_to_those_of_exact(opened: Any) -> N
     assert len({state["mean"] for state in (first, faster, third, fourth)}) == 4
 
 
-def test_the_sliders_of_the_run_move_those_of_the_solver(opened: Any, saved: Saved) -> None:
+def test_the_sliders_of_the_run_move_those_of_the_solver(opened: Any, saved: fl.Run) -> None:
     rows = saved.table[saved.table["scene.drive.frequency"] == 2.0]
     here = rows[rows["scene.belt_speed"] == np.unique(rows["scene.belt_speed"])[3]]
 
@@ -302,7 +307,7 @@ def test_the_sentence_names_the_shape(opened: Any) -> None:
     )
 
 
-def test_the_table_of_the_run_follows_its_sliders(opened: Any, saved: Saved) -> None:
+def test_the_table_of_the_run_follows_its_sliders(opened: Any, saved: fl.Run) -> None:
     before, after = opened["states"][0]["rows"], opened["states"][2]["rows"]
     speeds = np.unique(saved.table["scene.belt_speed"])
 

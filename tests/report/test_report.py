@@ -26,9 +26,8 @@ from frictionlab.report.figures import pictures
 from frictionlab.report.page import report, wall, write_index, write_report
 from frictionlab.report.sources import bibtex, sources
 from frictionlab.report.tables import html, symbol_html
-from frictionlab.runner import api, workforce
+from frictionlab.runner import api, engine
 from frictionlab.runner.files import FolderError
-from frictionlab.runner.saved import Saved, read_saved, saved_as
 from frictionlab.study.bibliography import read_bibtex
 from frictionlab.values.columns import _IN_SI, _NAMES
 
@@ -44,25 +43,25 @@ def _with_a_method_that_does_as_told(monkeypatch: pytest.MonkeyPatch) -> None:
     register(monkeypatch, fake=Fake)
 
 
-Runner = Callable[..., Saved]
+Runner = Callable[..., fl.Run]
 
 
 @pytest.fixture
 def ran(tmp_path: Path) -> Runner:
     """Runs a study, with pictures of nothing in place of figures."""
 
-    def run(name: str = "run", **changes: Any) -> Saved:
+    def run(name: str = "run", **changes: Any) -> fl.Run:
         sweep = {"sweep": {"scene.belt_speed": [4.0, 13.0, -2.0, 9.0, 3.0, 5.0]}}
         done = fl.run(PLAIN | sweep | changes, out=tmp_path / name)
         (tmp_path / name / "figures").mkdir()
         for figure in ("mean_friction", "velocity", "energies"):
             (tmp_path / name / "figures" / f"{figure}.svg").write_text(SVG)
-        return saved_as(done)
+        return done
 
     return run
 
 
-def page_of(saved: Saved) -> Page:
+def page_of(saved: fl.Run) -> Page:
     return Page(report(saved))
 
 
@@ -71,20 +70,20 @@ def at_speeds(*speeds: float) -> dict[str, Any]:
     return {"sweep": {"scene.belt_speed": list(speeds)}}
 
 
-def stop(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Saved:
+def stop(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> fl.Run:
     """A run that is interrupted once one of its two chunks is done."""
 
-    def collect_one(left: Any, *others: Any) -> None:
-        collect(list(left)[:1], *others)
+    def collect_one(sent: Any, left: Any, *others: Any) -> None:
+        collect(sent, list(left)[:1], *others)
         raise KeyboardInterrupt
 
-    collect = workforce.collect
-    monkeypatch.setattr(workforce, "collect", collect_one)
+    collect = engine.Sent.collect
+    monkeypatch.setattr(engine.Sent, "collect", collect_one)
     study = PLAIN | {"sweep": {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0]}}
     study |= {"expect": [{"column": "mean_friction", "below": 1}]}
     with pytest.raises(api.Interrupted):
         fl.run(study, out=tmp_path / "stopped")
-    return read_saved(tmp_path / "stopped")
+    return fl.load(tmp_path / "stopped")
 
 
 ODD_STUDIES: dict[str, dict[str, Any]] = {
@@ -214,9 +213,9 @@ def test_the_measures_of_curves_are_shown_with_their_errors_where_there_are_any(
     measured |= {"shape_area_error": [2e-4], "shape": ["concave"], "reason": [None]}
     (saved.folder / "curves.csv").write_text(pd.DataFrame(measured).to_csv(index=False))
 
-    with_them = page_of(read_saved(saved.folder))
+    with_them = page_of(fl.load(saved.folder))
     (saved.folder / "curves.csv").unlink()
-    without = page_of(read_saved(saved.folder))
+    without = page_of(fl.load(saved.folder))
 
     assert with_them.table("Shape") == [
         ["law", "shape", "area between curve and chord", "end of reversal"],
@@ -437,7 +436,7 @@ def test_versions_runs_and_overrides_are_those_of_the_account(tmp_path: Path, ra
     account["packages"]["numpy"] = "9.8.7"
     account["runs"][0] |= {"overrides": ["scene.normal_load=3"], "seconds": 83.4}
     (saved.folder / "provenance.json").write_text(json.dumps(account))
-    page = page_of(read_saved(saved.folder))
+    page = page_of(fl.load(saved.folder))
 
     assert ["numpy", "9.8.7"] in page.table("Versions")
     assert ["python", account["python"]] in page.table("Versions")
@@ -568,7 +567,7 @@ def test_a_figure_that_is_not_there_is_said_to_be_missing(ran: Runner) -> None:
 def test_the_page_made_from_the_folder_is_the_page_made_by_the_run(ran: Runner) -> None:
     saved = ran(title="A title", expect=[{"column": "error", "below": 1}])
 
-    assert report(read_saved(saved.folder)) == report(saved)
+    assert report(fl.load(saved.folder)) == report(saved)
 
 
 @deep("seconds of reports")
@@ -579,7 +578,7 @@ def test_a_page_takes_its_name_from_the_study_its_file_or_the_folder(tmp_path: P
     fl.run(file, out=tmp_path / "x")
 
     assert saved.title == "a folder"
-    assert read_saved(tmp_path / "x").title == "some_study"
+    assert fl.load(tmp_path / "x").title == "some_study"
     assert ran("y", title="The title").title == "The title"
 
 
@@ -588,7 +587,7 @@ def test_title_source_and_expectations_may_be_edited_in_the_folder(ran: Runner) 
     saved = ran(title="Old")
     edited(saved.folder, "Old", "New")
 
-    assert page_of(read_saved(saved.folder)).title == "New"
+    assert page_of(fl.load(saved.folder)).title == "New"
 
 
 def one_folder_up(folder: Path) -> None:
@@ -656,7 +655,7 @@ def test_what_is_no_run_or_a_damaged_one_is_told_in_one_message(
     without_stamps(folder)
     damage(folder)
     with pytest.raises(FolderError) as raised:
-        read_saved(folder)
+        fl.load(folder)
 
     assert message in str(raised.value)
     assert str(raised.value).startswith(str(folder))
@@ -667,7 +666,7 @@ def test_a_damaged_study_is_told_as_any_study_is(ran: Runner) -> None:
     folder = ran().folder
     (folder / "study.yaml").write_text("schema: 2\n")
     with pytest.raises(FolderError, match=r"study\.yaml:1:9: schema: must be 1") as raised:
-        read_saved(folder)
+        fl.load(folder)
     assert f"frictionlab run STUDY -o {folder}" in str(raised.value)
 
 
@@ -675,7 +674,7 @@ def test_a_damaged_study_is_told_as_any_study_is(ran: Runner) -> None:
 
 
 @pytest.fixture
-def three(ran: Runner) -> list[Saved]:
+def three(ran: Runner) -> list[fl.Run]:
     at_four = {"column": "error", "where": {"scene.belt_speed": 4}}
     return [
         ran("all/first one", title=HOSTILE, **at_speeds(1.0, 13.0)),
@@ -686,7 +685,7 @@ def three(ran: Runner) -> list[Saved]:
 
 @deep("seconds of reports")
 def test_an_index_has_a_row_for_each_study_that_leads_to_its_report(
-    three: list[Saved], tmp_path: Path
+    three: list[fl.Run], tmp_path: Path
 ) -> None:
     for saved in three:
         write_report(saved)

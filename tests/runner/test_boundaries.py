@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import frictionlab as fl
 from frictionlab.charts.maps import map_of_curves
-from frictionlab.runner.api import with_boundaries
+from frictionlab.runner.api import write_derived
 from frictionlab.runner.boundaries import measures_of
 from frictionlab.runner.workforce import threads
 from frictionlab.study.registry import INSTALLED_LAWS
@@ -119,7 +119,8 @@ def test_at_resonance_the_area_is_zero_where_friction_is_a_third_of_the_load() -
 @deep("seconds of roots")
 def test_lines_are_kept_in_a_file_read_again_and_drawn(tmp_path: Path) -> None:
     for _ in range(2):
-        done = with_boundaries(fl.run(study(), tmp_path / "out"))
+        done = fl.run(study(), tmp_path / "out")
+        write_derived(done, "boundaries")
     assert done.computed == 0
     assert len(done.boundaries) == len((tmp_path / "out" / "boundaries.csv").read_text().splitlines()) - 1
 

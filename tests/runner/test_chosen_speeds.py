@@ -16,7 +16,7 @@ import frictionlab as fl
 from frictionlab.runner import api
 from frictionlab.runner.batch import plan
 from frictionlab.runner.chosen_speeds import halves_to_add
-from frictionlab.runner.saved import read_saved
+from frictionlab.runner.saved import load as read_saved
 from frictionlab.runner.solving import Solving, run_share
 from frictionlab.runner.store import Store
 from frictionlab.study.load import load_study, parse_study
@@ -39,7 +39,7 @@ STUDY: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def chosen() -> fl.Study:
-    return api.run(STUDY).study
+    return fl.run(STUDY).study
 
 
 @pytest.mark.parametrize("within", [1e-2, 1e-3, 1e-4])
@@ -90,7 +90,7 @@ def test_points_are_not_asked_for_by_their_own_errors() -> None:
 
 
 def test_a_run_is_near_its_curves_everywhere(chosen: fl.Study) -> None:
-    table = api.run(STUDY).table
+    table = fl.run(STUDY).table
     assert len(table) == sum(map(len, chosen.chosen)) * 2
     assert len(table) < 2 * (25 + 50)
     dense = np.linspace(0.5, 60.0, 700)
@@ -110,15 +110,15 @@ def test_a_run_is_near_its_curves_everywhere(chosen: fl.Study) -> None:
 
 @deep("seconds of runs")
 def test_the_same_run_again_computes_nothing(tmp_path: Path) -> None:
-    first = api.run(STUDY, out=tmp_path / "run")
+    first = fl.run(STUDY, out=tmp_path / "run")
     assert first.computed == len(first.table)
-    again = api.run(load_study(tmp_path / "run" / "study.yaml"), out=tmp_path / "run")
+    again = fl.run(load_study(tmp_path / "run" / "study.yaml"), out=tmp_path / "run")
     assert again.computed == 0
     assert_frame_equal(again.table, first.table)
-    assert api.run(STUDY, out=tmp_path / "other").computed == 0
+    assert fl.run(STUDY, out=tmp_path / "other").computed == 0
 
     shutil.rmtree(tmp_path / ".cache")
-    assert api.run(STUDY, out=tmp_path / "run").computed == 0
+    assert fl.run(STUDY, out=tmp_path / "run").computed == 0
     saved = read_saved(tmp_path / "run")
     assert saved.study.chosen == first.study.chosen
     assert len(saved.table) == sum(len(curve.rows) for curve in saved.study.curves())
@@ -129,7 +129,7 @@ def test_the_same_run_again_computes_nothing(tmp_path: Path) -> None:
 def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole, calls, solve = api.run(STUDY).table, [0], Solving.solve
+    whole, calls, solve = fl.run(STUDY).table, [0], Solving.solve
 
     def interrupted(*given: Any) -> None:
         calls[0] += 1
@@ -139,14 +139,13 @@ def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
 
     monkeypatch.setattr(Solving, "solve", interrupted)
     with pytest.raises(api.Interrupted) as problem:
-        api.run(STUDY, out=tmp_path / "run")
+        fl.run(STUDY, out=tmp_path / "run")
     table = problem.value.run.table
     assert set(table["status"]) == {"ok", "killed"}
     assert read_saved(tmp_path / "run").size == len(table)
 
     monkeypatch.undo()
-    shutil.rmtree(tmp_path / ".cache")
-    on = api.run(STUDY, out=tmp_path / "run")
+    on = fl.run(STUDY, out=tmp_path / "run")
     assert on.computed == len(whole) - (table["status"] == "ok").sum()
     assert_frame_equal(on.table, whole)
 
@@ -154,7 +153,7 @@ def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
 @deep("seconds of runs")
 def test_what_is_kept_of_orbits_belongs_to_its_row(tmp_path: Path) -> None:
     kept = STUDY | {"keep": {"orbit": 4, "harmonics": 2}, "laws": LAWS[:1]}
-    done = api.run(kept, out=tmp_path / "run")
+    done = fl.run(kept, out=tmp_path / "run")
     assert done.orbits is not None
     assert done.harmonics is not None
     assert sorted(set(done.orbits["row"])) == list(range(len(done.table)))
@@ -165,12 +164,12 @@ def test_what_is_kept_of_orbits_belongs_to_its_row(tmp_path: Path) -> None:
         scene = scene.with_(**{"drive.frequency": given["scene.drive.frequency"]})
         orbit = fl.steady_state(scene, fl.Coulomb(mu=0.4)).orbit(4)
         np.testing.assert_allclose(done.orbits[done.orbits["row"] == row]["v1"], orbit["v1"], atol=1e-9)
-    assert api.run(kept, out=tmp_path / "run").computed == 0
+    assert fl.run(kept, out=tmp_path / "run").computed == 0
 
 
 def test_belt_speeds_that_are_expected_of_are_points() -> None:
     expect = [{"where": {"scene.belt_speed": 7, "law": "coulomb"}, "column": "mean_friction", "above": 0}]
-    done = api.run(STUDY | {"expect": expect})
+    done = fl.run(STUDY | {"expect": expect})
     assert all(verdict.passed for verdict in done.verdicts)
     assert 7.0 in set(done.table["scene.belt_speed"])
 
@@ -178,9 +177,7 @@ def test_belt_speeds_that_are_expected_of_are_points() -> None:
 def test_v_lin_of_a_body_that_remembers_is_among_them_and_ends_reversal() -> None:
     scene = SCENE | {"body": {"fractional": {"coefficient": 0.2, "order": 0.5}}}
     over = {"scene.belt_speed": {"start": 0.5, "stop": 60, "within": 1e-2}}
-    done = api.run(
-        {"schema": 1, "scene": scene, "laws": LAWS[:1], "sweep": over, "columns": ["shape", "all"]}
-    )
+    done = fl.run({"schema": 1, "scene": scene, "laws": LAWS[:1], "sweep": over, "columns": ["shape", "all"]})
     v_lin = 10.0 / abs(0.2j + 0.2 * 1j**0.5)
 
     assert done.curves["reversal_end"].tolist() == pytest.approx([v_lin], rel=1e-12)
@@ -196,7 +193,7 @@ def test_metres_per_second_are_chosen_as_well() -> None:
         "drive": {"amplitude_N": 4.0, "frequency_rad_per_s": 30.0},
     }  # fmt: skip
     over = {"scene.dimensional.belt_speed_m_per_s": {"start": 0.01, "stop": 0.5, "within": 1e-2}}
-    done = api.run({"schema": 1, "scene": {"dimensional": si}, "laws": LAWS[:1], "sweep": over})
+    done = fl.run({"schema": 1, "scene": {"dimensional": si}, "laws": LAWS[:1], "sweep": over})
     assert done.counts == {"ok": len(done.table)}
     assert (done.table["velocity_ratio"] - 1.0).abs().min() < 1e-12
 

@@ -16,9 +16,9 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.runner import api, gathering, saved, study_run, workforce
+from frictionlab.runner import api, engine, pieces, saved, study_run
 from frictionlab.runner import gathering as thinned
-from frictionlab.runner.saved import read_saved
+from frictionlab.runner.saved import load as read_saved
 from frictionlab.study.load import parse_study
 from frictionlab.study.written import yaml_text
 
@@ -49,8 +49,7 @@ def short_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of more than 100 rows are long, and written 60 rows at a time."""
     for place in (study_run, saved):
         monkeypatch.setattr(place, "LONG_TABLE", 100)
-    monkeypatch.setattr(gathering, "ROWS_TOGETHER", 50)
-    monkeypatch.setattr(gathering, "ROWS_AT_ONCE", 60)
+    monkeypatch.setattr(pieces, "ROWS_OF_A_BLOCK", 50)
 
 
 ORDERS = [
@@ -149,13 +148,13 @@ def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
 def test_a_long_run_that_is_interrupted_goes_on(
     short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def collect_one(left: Any, *others: Any) -> None:
-        collect(list(left)[:1], *others)
+    def collect_one(sent: Any, left: Any, *others: Any) -> None:
+        collect(sent, list(left)[:1], *others)
         raise KeyboardInterrupt
 
-    collect = workforce.collect
+    collect = engine.Sent.collect
     with monkeypatch.context() as patch:
-        patch.setattr(workforce, "collect", collect_one)
+        patch.setattr(engine.Sent, "collect", collect_one)
         with pytest.raises(api.Interrupted) as caught:
             fl.run(study(), out=tmp_path / "run")
     stopped = caught.value.run
@@ -185,7 +184,7 @@ def test_the_page_and_the_figures_show_some_and_tell_of_all(
     assert "is read from 57 points spread over all 320 points" in page
     assert (out / "figures" / "mean_friction.svg").exists()
     again = read_saved(out)
-    assert (again.size, len(again.table), again.counts) == (320, 57, {"ok": 160, "refused": 160})
+    assert (again.size, len(again.shown), again.counts) == (320, 57, {"ok": 160, "refused": 160})
     assert cli.main(["report", str(out)]) == 0
 
 

@@ -170,21 +170,21 @@ def test_answers_come_back_bit_for_bit(tmp_path: Path) -> None:
 
     assert again is not None
     assert again.column_names == answers.column_names == Store(tmp_path).columns(KEY)
-    assert again.drop_columns("seconds").to_pydict() == answers.drop_columns("seconds").to_pydict()
+    assert repr(again.to_pydict()) == repr(answers.to_pydict())
     assert kept_of(again, "orbits")["row"].tolist() == [0] * 3 + [1] * 3
     assert kept_of(again, "harmonics").equals(kept_of(answers, "harmonics"))
 
 
 def test_a_damaged_file_is_noticed_or_does_no_harm(tmp_path: Path) -> None:
     """Bits that parquet has no checksum of lie in its account of columns, which is not read but for their places."""
-    whole = solve_each(piece(task=TASK).chunks()).answers.drop_columns("seconds").to_pydict()
+    whole = repr(solve_each(piece(task=TASK).chunks()).answers.to_pydict())
     for at in range(0, 8000, 137):
         store, path = kept_one(tmp_path)
         content = bytearray(path.read_bytes())
         content[at % len(content)] ^= 1
         path.write_bytes(content)
         found = store.get(KEY)
-        assert found is None or found.drop_columns("seconds").to_pydict() == whole
+        assert found is None or repr(found.to_pydict()) == whole
         assert path.exists() == (found is not None)
         path.unlink(missing_ok=True)
     store, path = kept_one(tmp_path)

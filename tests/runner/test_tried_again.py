@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from fake_methods import Fake, breaks_down, faked, is_wrong, register
@@ -39,9 +38,9 @@ def test_a_point_that_failed_is_taken_over_while_all_code_is_the_same(
     trouble: Trouble, tmp_path: Path
 ) -> None:
     trouble({4.0: breaks_down})
-    fl.run(STUDY, out=tmp_path)
+    fl.run(STUDY, out=tmp_path / "run")
 
-    again = fl.run(STUDY, out=tmp_path)
+    again = fl.run(STUDY, out=tmp_path / "run")
 
     assert again.computed == 0
     assert again.table["reason"].tolist()[0] == "ZeroDivisionError: float division by zero"
@@ -51,44 +50,28 @@ def test_a_point_that_failed_is_tried_again_by_other_code(
     trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     trouble({4.0: breaks_down})
-    fl.run(STUDY, out=tmp_path)
+    fl.run(STUDY, out=tmp_path / "run")
     mended(monkeypatch)
     trouble({})
 
-    again = fl.run(STUDY, out=tmp_path)
+    again = fl.run(STUDY, out=tmp_path / "run")
 
     assert (again.computed, again.table["status"].tolist()) == (2, ["ok", "ok"])
-    assert fl.run(STUDY, out=tmp_path).computed == 0
+    assert fl.run(STUDY, out=tmp_path / "run").computed == 0
 
 
 def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
     trouble: Trouble, tmp_path: Path
 ) -> None:
     trouble({4.0: is_wrong})
-    first = fl.run(STUDY, out=tmp_path)
+    first = fl.run(STUDY, out=tmp_path / "run")
     trouble({})
 
-    again = fl.run(STUDY, out=tmp_path)
+    again = fl.run(STUDY, out=tmp_path / "run")
 
     assert first.table["reason"].str.startswith("internal error: ").all()
     assert again.computed == 2
     assert again.table["status"].tolist() == ["ok", "ok"]
-
-
-def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed(
-    trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def dies(done: int, total: int, *_how: Any) -> None:
-        raise MemoryError
-
-    trouble({4.0: breaks_down})
-    fl.run(STUDY, out=tmp_path)
-    mended(monkeypatch)
-    with pytest.raises(MemoryError):
-        fl.run(STUDY, out=tmp_path, progress=dies)
-    trouble({})
-
-    assert fl.run(STUDY, out=tmp_path).table["status"].tolist() == ["ok", "ok"]
 
 
 def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(

@@ -1,29 +1,37 @@
-"""Laws, methods and scenes compared in memory: one call, one result that holds tables and makes pages of them."""
+"""Studies, laws, methods and scenes solved from Python: one result that holds tables and makes pages of them."""
 
 from __future__ import annotations
 
 import tempfile
-import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from frictionlab.report.preview import preview_html
 from frictionlab.runner.api import run as run_study
-from frictionlab.runner.api import with_onsets
-from frictionlab.runner.arguments import given_scene, given_speeds
+from frictionlab.runner.arguments import (
+    Existing,
+    check_limit,
+    check_ways,
+    given_scene,
+    given_speeds,
+    given_study,
+)
 from frictionlab.runner.pairs import with_friction
-from frictionlab.runner.progress import ProgressAsked
-from frictionlab.runner.run import Run
-from frictionlab.runner.saved import save_run, saved_as
+from frictionlab.runner.progress import ProgressAsked, progress_told
+from frictionlab.runner.results import Results
+from frictionlab.runner.saved import load as load_folder
+from frictionlab.runner.saved import save_run
+from frictionlab.runner.store import USUAL_GIGABYTES, store_of
+from frictionlab.runner.study_run import Interrupted, RunWays, UnsavedError
 from frictionlab.runner.summary import summary
 from frictionlab.runner.table import swept_inputs, whole
+from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import FRICTION
 from frictionlab.study.figure_options import figure_options
@@ -37,94 +45,61 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from frictionlab.charts.figures import FigureData
+
 
 @dataclass(frozen=True, repr=False)
-class Comparison:
-    """Study that was solved in memory, with its table, curves and figures.
+class Run(Results):
+    """Results of a study, in memory or in a folder: tables, verdicts, figures, report.
 
-    ``fl.compare`` and ``fl.sweep`` return it. It is shown as its summary, in a notebook as a small table with
-    the curves drawn in it.
+    ``fl.run``, ``fl.compare``, ``fl.sweep`` and ``fl.load`` return it. It is shown as its summary, in a notebook as a
+    small table with the curves drawn in it.
 
     Attributes
     ----------
-    run : Run
-        Results of the study.
+    study : Study
+        Study that was solved; ``.to_yaml()`` writes it as a study file.
+    readers : dict of str to callable
+        Functions that read or make each table; attributes of these names call them once.
+    counts : dict of str to int
+        Number of rows of each status.
+    verdicts : tuple of Verdict
+        Verdict on each expectation of the study.
+    computed : int
+        Number of points computed by this run, not found in the store.
     seconds : float
-        Time that the solution took [s].
+        Wall time of all runs that worked on it [s].
+    folder : Path, optional
+        Folder that the run was written to; None if it is in memory.
+    account : dict
+        Content of ``provenance.json`` of a run in a folder.
+    damaged : tuple of str
+        Files of a loaded folder that are damaged, and the command that mends them.
 
     Examples
     --------
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
     >>> done = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45])
+    >>> done
+    Run(3 points: 3 ok)
     >>> print(str(done).splitlines()[0])
     3 points: 3 ok
     """
 
-    run: Run
-    seconds: float
-
-    @property
-    def study(self) -> Study:
-        """Study that was solved; ``.to_yaml()`` writes it as a study file.
+    @classmethod
+    def of(cls, results: Results) -> Run:
+        """Return results as a run.
 
         Examples
         --------
         >>> import frictionlab as fl
-        >>> drive = fl.Drive(unbalance=10, frequency=1)
-        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
-        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
-        >>> done.study.laws[1].law()
-        Dahl(mu=0.4, stiffness=40)
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+        >>> fl.Run.of(done).size
+        1
         """
-        return self.run.study
-
-    @property
-    def table(self) -> pd.DataFrame:
-        """Table with a row for each scene, law and method, and every result column.
-
-        Examples
-        --------
-        >>> import frictionlab as fl
-        >>> drive = fl.Drive(unbalance=10, frequency=1)
-        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
-        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
-        >>> done.table[["law", "scene.belt_speed", "mean_friction"]].round(4).values.tolist()[:2]
-        [['coulomb', 5.0, 0.0506], ['coulomb', 25.0, 0.2178]]
-        """
-        return self.run.table
-
-    @property
-    def curves(self) -> pd.DataFrame:
-        """Table of curves with their shapes, as in ``curves.csv``; empty if belt speed is not swept.
-
-        Examples
-        --------
-        >>> import frictionlab as fl
-        >>> drive = fl.Drive(unbalance=10, frequency=1)
-        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
-        >>> done = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed={"start": 1, "stop": 60, "num": 30})
-        >>> done.curves[["law", "shape"]].values.tolist()
-        [['coulomb', 'concave']]
-        """
-        return self.run.curves
-
-    @property
-    def onsets(self) -> pd.DataFrame:
-        """Table with a row for each belt speed at which the motion changes its kind.
-
-        Onsets are computed when first used.
-
-        Examples
-        --------
-        >>> import frictionlab as fl
-        >>> drive = fl.Drive(unbalance=10, frequency=1)
-        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
-        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
-        >>> done.onsets[["law", "onset", "belt_speed"]].round(2).values.tolist()[0]
-        ['coulomb', 'stick_begins', 43.9]
-        """
-        return self.run.onsets
+        return cls(**{each.name: getattr(results, each.name) for each in fields(Results)})
 
     def to_xarray(self) -> xarray.Dataset:
         """Convert the table to an xarray dataset.
@@ -242,18 +217,14 @@ class Comparison:
         >>> {"results.csv", "report.html", "study.yaml"} < {file.name for file in done.save("laws").iterdir()}
         True
         """
-        from frictionlab.charts.figures import (  # with matplotlib, which takes a second
-            FigureData,
-            draw_figures,
-        )
+        from frictionlab.charts.figures import draw_figures  # with matplotlib, which takes a second
         from frictionlab.report.page import write_report
 
-        saved = saved_as(with_onsets(save_run(self.run, Path(folder), self.seconds)))
-        told = {"onsets": saved.onsets, "curves": saved.curves}
-        data = FigureData.of(saved.study, saved.table, saved.title, **told)
-        draw_figures(data, saved.folder / "figures")
+        saved = save_run(self, Path(folder))
+        data = figure_data(saved)
+        draw_figures(data, Path(folder) / "figures")
         write_report(saved, data)
-        return saved.folder
+        return Path(folder)
 
     def report(self, path: str | PathLike[str]) -> Path:
         """Write the report alone, one HTML file that needs no others.
@@ -289,13 +260,140 @@ class Comparison:
             write_whole(Path(path), page.read_bytes())
         return Path(path)
 
-    def __repr__(self) -> str:
-        """The summary that ``frictionlab run`` prints."""
-        return summary(self.run)
+    def __str__(self) -> str:
+        """Return the summary that ``frictionlab run`` prints."""
+        return summary(self)
 
     def _repr_html_(self) -> str:
         table, curves = (in_shown_units(each, self.study.units) for each in (self.table, self.curves))
         return preview_html(table, curves)
+
+
+def figure_data(done: Results) -> FigureData:
+    """Return what the figures of a run are drawn of; of a long table, whose rows are not all there, no orbits."""
+    from frictionlab.charts.figures import FigureData, Kept  # with matplotlib, which takes a second
+
+    kept = Kept(done.orbits_of, done.harmonics)
+    told = {"onsets": done.shown_onsets, "curves": done.curves, "attractors": done.attractors}
+    boundaries = done.boundaries if done.study.boundaries else None
+    return FigureData.of(done.study, done.shown, done.title, kept=kept, boundaries=boundaries, **told)
+
+
+def run(
+    study: str | PathLike[str] | Mapping[str, Any] | Study,
+    out: str | PathLike[str] | None = None,
+    overrides: Sequence[str] = (),
+    existing: Existing = "reuse",
+    executor: Executor | Workforce | None = None,
+    progress: ProgressAsked = None,
+    columns: Sequence[str] | str | None = None,
+    cache: str | PathLike[str] | None = None,
+    cache_gigabytes: float = USUAL_GIGABYTES,
+    as_csv: bool = False,
+) -> Run:
+    """Solve every case of a study.
+
+    Nothing is written without ``out`` and ``cache``.
+
+    Parameters
+    ----------
+    study : str, path-like, dict or Study
+        Study: the path of a file, the content of one as a mapping, or a ``Study``.
+    out : str or path-like, optional
+        Folder for results; they are kept in memory only if left out.
+    overrides : list of str, default ()
+        Changes ``path=value`` as for ``--set``. A ``Study`` has them already: with one they are recorded
+        only.
+    existing : {"reuse", "replace"}, default "reuse"
+        Treatment of results in ``out``: "reuse" takes over finished points of the same study, "replace"
+        replaces any results.
+    executor : concurrent.futures.Executor, optional
+        Executor that solves the pieces; threads of this process if left out.
+    progress : bool, optional
+        Whether to report progress on stderr from the third second on. If left out, it is reported where a
+        terminal or a notebook shows it.
+    columns : list of str or str, optional
+        Result columns and groups of them, instead of those of the study; "all" for every one.
+        ``frictionlab columns`` lists them.
+    cache : str or path-like, optional
+        Folder that keeps solved pieces for this and other studies; ``.cache`` beside ``out`` if left out.
+    cache_gigabytes : float, default 4
+        Largest size of the cache [GB]; beyond it the pieces that were used longest ago are removed.
+    as_csv : bool, default False
+        Whether to write a table of more than 1e5 rows as text, too. Such a table is read from its file when
+        ``.table`` is first used.
+
+    Returns
+    -------
+    Run
+        Tables, kept orbits, and the verdicts on what the study expects.
+
+    Raises
+    ------
+    StudyError
+        If the study has mistakes; the message has every one.
+    FolderError
+        If ``out`` holds another study, or another run writes there.
+    UnsavedError
+        If a file cannot be written; ``.run`` of the error has the results.
+    Interrupted
+        If the run is interrupted by Ctrl-C; finished points are kept in ``out``.
+    BrokenPlugin
+        If an installed law or a law from a file cannot be used.
+    ValueError
+        If a value makes no sense, such as an unknown column.
+    TypeError
+        If a value is of another kind.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
+    >>> study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["auto", "mdsm"]}
+    >>> done = fl.run(study, overrides=["scene.belt_speed=25"])
+    >>> done.table[["method", "mean_friction"]].round(4).values.tolist()
+    [['auto', 0.2178], ['mdsm', 0.1333]]
+    """
+    check_ways(existing, executor)
+    ready = given_study(study, overrides, columns)
+    check_limit(ready, executor)
+    store = store_of(out, cache, cache_gigabytes)
+    with progress_told(progress) as tell:
+        try:
+            return Run.of(run_study(ready, out, store, RunWays(overrides, existing, executor, tell, as_csv)))
+        except (Interrupted, UnsavedError) as problem:
+            problem.run = Run.of(problem.run)
+            raise
+
+
+def load(folder: str | PathLike[str]) -> Run:
+    """Read a run from its folder; nothing is computed.
+
+    Parameters
+    ----------
+    folder : str or path-like
+        Folder that ``frictionlab run``, ``fl.run`` or ``.save()`` wrote.
+
+    Returns
+    -------
+    Run
+        Tables, kept orbits and verdicts of the run, as they were written.
+
+    Raises
+    ------
+    FolderError
+        If it is not the folder of a run, or a file in it is damaged.
+    StudyError
+        If its ``study.yaml`` has mistakes.
+
+    Examples
+    --------
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> fl.load(fl.compare(scene, fl.Coulomb(mu=0.4)).save("one")).counts
+    {'ok': 1}
+    """
+    return Run.of(load_folder(Path(folder)))
 
 
 def compare(
@@ -307,7 +405,7 @@ def compare(
     columns: Sequence[str] | None = None,
     executor: Executor | None = None,
     progress: ProgressAsked = None,
-) -> Comparison:
+) -> Run:
     """Compare laws, by one or several methods, along belt speeds of one scene.
 
     Parameters
@@ -328,14 +426,14 @@ def compare(
     columns : list of str, optional
         Result columns and groups of them; "all" for every one. All default columns if left out.
     executor : concurrent.futures.Executor, optional
-        Executor that solves the chunks; threads of this process if left out.
+        Executor that solves the pieces; threads of this process if left out.
     progress : bool, optional
         Whether to report progress on stderr from the third second on. If left out, it is reported where a
         terminal or a notebook shows it.
 
     Returns
     -------
-    Comparison
+    Run
         Table, curves and figures.
 
     Raises
@@ -371,7 +469,7 @@ def sweep(
     columns: Sequence[str] | None = None,
     executor: Executor | None = None,
     progress: ProgressAsked = None,
-) -> Comparison:
+) -> Run:
     """Solve the full grid of a sweep.
 
     Parameters
@@ -390,14 +488,14 @@ def sweep(
     columns : list of str, optional
         Result columns and groups of them; "all" for every one. All default columns if left out.
     executor : concurrent.futures.Executor, optional
-        Executor that solves the chunks; threads of this process if left out.
+        Executor that solves the pieces; threads of this process if left out.
     progress : bool, optional
         Whether to report progress on stderr from the third second on. If left out, it is reported where a
         terminal or a notebook shows it.
 
     Returns
     -------
-    Comparison
+    Run
         Table, curves and figures.
 
     Raises
@@ -422,10 +520,7 @@ def sweep(
         "tolerance": tolerance,
         "columns": columns if columns is None or isinstance(columns, str) else list(columns),
     }
-    study = Study.of(scene, laws, methods, over, **told)
-    start = time.perf_counter()
-    done = run_study(study, executor=executor, progress=progress)
-    return Comparison(done, time.perf_counter() - start)
+    return run(Study.of(scene, laws, methods, over, **told), executor=executor, progress=progress)
 
 
 _COEFFICIENTS = "law.mu", "law.mu_kinetic", "law.mu_static"

@@ -179,11 +179,10 @@ def run_command(**given: Any) -> int:
 
 def _run(job: Job, asked: RunOptions, meter: Meter) -> Results:
     """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
-    from frictionlab.runner import api
+    from frictionlab.runner import api, study_run
     from frictionlab.runner.arguments import check_limit
     from frictionlab.runner.folder import run_folder
     from frictionlab.runner.store import store_of
-    from frictionlab.runner.study_run import RunWays
 
     for line in [] if asked.force else run_folder(job.study, job.out).damaged():
         print_message(line)
@@ -193,11 +192,11 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Results:
         with _force(asked) as force:
             meter.begins("solving", "points")
             check_limit(job.study, force)
-            ways = RunWays(asked.changes, asked.existing, force, meter, asked.csv)
+            ways = study_run.RunWays(asked.changes, asked.existing, force, meter, asked.csv)
             result = api.run(job.study, job.out, store, ways)
-    except api.Interrupted as problem:
+    except study_run.Interrupted as problem:
         raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
-    except api.UnsavedError as problem:
+    except study_run.UnsavedError as problem:
         print_records(_rows(job, problem.run, asked)) if asked.as_json else _show(problem.run)
         raise
     _show_failed(result) if asked.as_json or asked.cite else _show(result)

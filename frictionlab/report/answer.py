@@ -51,7 +51,7 @@ def height_sentence(run: Facts) -> Markup:
 
 def _without(table: pd.DataFrame, best: pd.DataFrame) -> Markup:
     """Which laws have no number anywhere, and the end of the sentence."""
-    silent = [law for law in table["law"].unique() if law not in set(best["law"])]
+    silent = [law for law in table["law"].unique() if law not in best["law"].unique()]
     has = "has" if len(silent) == 1 else "have"
     return Markup("; {} {} no number.").format(listed(silent), has) if silent else Markup(".")
 

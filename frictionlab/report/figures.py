@@ -98,7 +98,7 @@ def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
         "Law {}, method {}: every state that motions end in, above the means over a whole period (with the range "
         "of means over one drive period), below the position at the start of each drive period. A marker for each "
         "period of the response{}; {}."
-    ).format(joined_values(rows["law"]), joined_values(rows["method"]), wild, found)
+    ).format(joined_values(rows["law"].unique()), joined_values(rows["method"].unique()), wild, found)
     return _picture(run, name, caption)
 
 
@@ -116,7 +116,7 @@ def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
         lines = list(_lines(replace(family, curves=drawn)))
     else:
         told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
-        names = (joined_values(run.figures.table[name]) for name in ("law", "method"))
+        names = (joined_values(run.figures.table[name].unique()) for name in ("law", "method"))
         lines = [Markup("Laws: {}; methods: {}").format(*names)]
     if not lines_in:
         told += [*lines, *_held_and_missing(run)]

@@ -44,6 +44,9 @@ VERDICTS = {
 }
 
 
+_OF_CURVES = "status", "mean_friction", "mean_friction_N", "error", "error_N", "error_kind"
+
+
 def curves_grid(run: Facts) -> Grid:
     """One line per curve: everything equal but belt speed."""
     head = [
@@ -52,9 +55,10 @@ def curves_grid(run: Facts) -> Grid:
         "mean friction force [N]",
         *("largest error", "at", "kind of error", "errors above the tolerance"),
     ]
+    narrow = run.table[[name for name in run.table if name in (run.speed, *_OF_CURVES)]]
     rows = (
-        [*who, statuses(curve.rows).replace("_", " "), *_numbers(run, curve.rows)]
-        for who, curve in zip(whose(run.curves), run.curves, strict=True)
+        [*who, statuses(own).replace("_", " "), *_numbers(run, own)]
+        for who, own in zip(whose(run.curves), (narrow.iloc[each.places] for each in run.curves), strict=True)
     )
     return grid("Curves: everything equal but belt speed", head, rows, "curves", total=len(run.curves))
 
@@ -67,7 +71,7 @@ def _numbers(run: Facts, rows: pd.DataFrame) -> list[Cell]:
         return [*spans, *[""] * 4]
     worst = known.loc[known["error"].idxmax()]
     above = int(above_tolerance(run, known).sum())
-    kinds = joined_values(known["error_kind"].dropna())
+    kinds = joined_values(known["error_kind"].dropna().unique())
     at = setting(run.speed, worst[run.speed])
     return [*spans, size(float(worst["error"])), at, kinds, counted(above, "point") if above else ""]
 
@@ -185,7 +189,12 @@ def _by_sentence(table: pd.DataFrame, by: str, sentences: pd.Series) -> list[lis
     told = table[["law", by]].assign(said=sentences)[table[by].notna() & sentences.notna()]
     groups = told.groupby([told[by], each_once(told["said"], pattern)], sort=False)
     return [
-        [str(cell), alike(rows["said"].unique()), counted(len(rows), "point"), joined_values(rows["law"])]
+        [
+            str(cell),
+            alike(rows["said"].unique()),
+            counted(len(rows), "point"),
+            joined_values(rows["law"].unique()),
+        ]
         for (cell, _), rows in groups
     ]
 
@@ -231,7 +240,7 @@ def _trouble(run: Facts, status: str, rows: pd.DataFrame) -> list[Cell]:
     left = len(rows) - MOST_EXAMPLES
     more = f"; and {counted(left, 'point')} more" if left > 0 else ""
     words = status.replace("_", " ") if status != "ok" else "ok, but"
-    who = joined_values(rows["law"]), joined_values(rows["method"])
+    who = joined_values(rows["law"].unique()), joined_values(rows["method"].unique())
     return [words, str(len(rows)), alike(rows["reason"].fillna("")), *who, told + more]
 
 

@@ -232,8 +232,9 @@ def shape_grid(run: Facts) -> Grid | None:
         return None
     curves, unit = run.curves_of(table), unit_html(run.speed)
     rows = (
-        [*who, *(_measure(run, curve, name) for name in own)]
+        [*who, *(_measure(run, curve, row, name) for name in own)]
         for who, curve in zip(whose(curves), curves, strict=True)
+        for row in [curve.rows.iloc[0]]
     )
     heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name in ALSO_IN_SI else "") for name in own]
     caption = "Shape of each curve against its chord, the line from rest to the end of reversal"
@@ -248,8 +249,7 @@ def _missing(curves: pd.DataFrame) -> list[str]:
     return [f"A measure is missing of {counted(len(kind), 'curve')}: {alike(kind)}." for _, kind in kinds]
 
 
-def _measure(run: Facts, curve: CurveRows, name: str) -> Cell:
-    row = curve.rows.iloc[0]
+def _measure(run: Facts, curve: CurveRows, row: pd.Series, name: str) -> Cell:
     if isinstance(row[name], str):
         return row[name]
     if pd.isna(row[name]):

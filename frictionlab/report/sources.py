@@ -115,8 +115,8 @@ def sources(saved: Results) -> list[Cited]:
     """The study's source, then those of its laws, then those of its methods, each where it gave a number."""
     study, table = saved.study, saved.shown
     found = table[table["mean_friction"].notna() | (table["status"] == "not_unique")]
-    laws = {law.kind: law for law in study.laws if law.kind in set(found["kind"])}
-    methods = {choice.name: "" for choice in study.methods if choice.label in set(found["method"])}
+    laws = {law.kind: law for law in study.laws if law.kind in found["kind"].unique()}
+    methods = {choice.name: "" for choice in study.methods if choice.label in found["method"].unique()}
     hows = (chosen_by_auto(found) if "auto" in methods else {}) | methods
     cited = [
         _cited("the study", study.source, ""),

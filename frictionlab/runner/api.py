@@ -30,8 +30,7 @@ from frictionlab.runner.progress import ProgressAsked, progress_told, silent
 from frictionlab.runner.results import Results
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.store import FolderName, Store
-from frictionlab.runner.study_run import Interrupted, RunWays, StudyRun, UnsavedError
-from frictionlab.runner.table import without_empty
+from frictionlab.runner.study_run import RunWays, StudyRun
 from frictionlab.runner.workforce import workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
@@ -40,16 +39,6 @@ from frictionlab.study.parts import MethodChoice
 from frictionlab.study.study import Study, kind_of
 from frictionlab.values.columns import selected
 from frictionlab.values.quantities import at_least_one
-
-__all__ = [
-    "Interrupted",
-    "UnsavedError",
-    "attractors",
-    "curve",
-    "run",
-    "table_of",
-    "write_derived",
-]
 
 
 def run(study: Study, out: FolderName | None, store: Store, ways: RunWays) -> Results:
@@ -132,8 +121,8 @@ def curve(
     # a method is never given a belt speed twice
     different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
     whole = _one_curve(kind, law, ready, Scenes(scene, different))
-    table = table_of([whole], task, executor, progress).iloc[places].reset_index(drop=True)
-    return without_empty(table) if columns is None else table
+    table = table_of([whole], task, executor, progress, usual=columns is None)
+    return table.iloc[places].reset_index(drop=True)
 
 
 def table_of(
@@ -141,12 +130,16 @@ def table_of(
     task: Task,
     executor: Executor | None = None,
     progress: ProgressAsked = silent,
+    usual: bool = False,
 ) -> pd.DataFrame:
-    """The result table of curves whose rows follow one another; nothing is kept. Raises BrokenPlugin."""
+    """Return the result table of curves whose rows follow one another; nothing is kept. Raises BrokenPlugin.
+
+    usual: whether results that no row has are left out.
+    """
     solving = Solving(curves, task)
     with workforce(executor) as force, progress_told(progress) as tell:
         solving.solve(force, tell)
-    return whole_table(solving)
+    return whole_table(solving, usual)
 
 
 def attractors(

@@ -85,7 +85,11 @@ def solve_each(chunks: Sequence[Chunk], given_up: threading.Event = GIVE_UP) -> 
     """Answer every point of the chunks of a piece. Raises BrokenPlugin, CancelledError."""
     from frictionlab.runner.packing import packed  # brings arrow: one number does without
 
-    found = [solve_within(chunk, given_up) for chunk in chunks]
+    found = list[tuple[Part, float]]()
+    if len(chunks) > 1:
+        with suppress(OverLimit):
+            found = within(sum(map(_allowed, chunks)), lambda: [*map(solve_timed, chunks)], given_up=given_up)
+    found = found or [solve_within(chunk, given_up) for chunk in chunks]
     return Solved(packed([part for part, _ in found]), sum(seconds for _, seconds in found))
 
 
@@ -94,16 +98,20 @@ def solve_within(chunk: Chunk, given_up: threading.Event = GIVE_UP) -> tuple[Par
 
     Raises BrokenPlugin, CancelledError.
     """
-    size, limit = len(chunk), chunk.task.seconds_per_point
+    size = len(chunk)
     try:
-        return within(limit * max(1.0, size / OF_TEN), solve_timed, chunk, given_up=given_up)
+        return within(_allowed(chunk), solve_timed, chunk, given_up=given_up)
     except OverLimit:
         if size == 1:
-            return _killed(limit), limit
+            return _killed(chunk.task.seconds_per_point), chunk.task.seconds_per_point
     places = range(size // 2), range(size // 2, size)
     halves = [solve_within(chunk.of(slice(own.start, own.stop)), given_up) for own in places]
     parts = [(own, part) for own, (part, _) in zip(places, halves, strict=True)]
     return one_part(parts, size), sum(seconds for _, seconds in halves)
+
+
+def _allowed(chunk: Chunk) -> float:
+    return chunk.task.seconds_per_point * max(1.0, len(chunk) / OF_TEN)
 
 
 def solve_timed(chunk: Chunk) -> tuple[Part, float]:

@@ -157,12 +157,9 @@ class RunFolder(FolderFiles):
 
     def describe(self, runs: dict[str, Any], done: bool = False) -> None:
         """Write study.yaml and provenance.json. done: all files are as they stay. Raises SaveError."""
-        copies = {name: law.encode() for name, law in self.identity.law_texts.items()}
         pages: dict[str, Any] = {}
         with suppress(FolderError):
             pages = self.account().get("pages", {})
-        for name in copies:
-            _make_folder((self.path / name).parent)
         provenance = {
             "frictionlab": self.identity.version,
             "study": self.identity.file,
@@ -177,8 +174,13 @@ class RunFolder(FolderFiles):
         }
         # provenance.json first: a study.yaml without it is treated as a user's own file.
         self.write_account(provenance)
-        for name, law in copies.items():
-            write_whole(self.path / name, law)
+        self.write_study()
+
+    def write_study(self) -> None:
+        """Write study.yaml and the copies of its law files. Raises SaveError."""
+        for name, law in self.identity.law_texts.items():
+            _make_folder((self.path / name).parent)
+            write_whole(self.path / name, law.encode())
         write_whole(self.study_file, self.identity.text.encode())
 
     def add_text(self, path: Path, table: pd.DataFrame) -> None:

@@ -197,7 +197,7 @@ def _joined(tables: Sequence[pd.DataFrame]) -> pd.DataFrame:
     return filled[0] if len(filled) == 1 else pd.concat(filled, ignore_index=True)
 
 
-def whole_table(solving: Solving) -> pd.DataFrame:
-    """Return the table with every result that was asked for."""
+def whole_table(solving: Solving, usual: bool) -> pd.DataFrame:
+    """Return the table with every result that was asked for. usual: those alone that some row has."""
     given = InputColumns(solving.curves).of(range(len(solving.curves)))
-    return result_frame(solving.answers(), given, solving.task.columns)
+    return result_frame(solving.answers(), given, solving.columns() if usual else solving.task.columns)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 import pandas as pd
@@ -10,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from frictionlab.runner.part import Part
+from frictionlab.runner.part import KeptRows, Part
 from frictionlab.values.quantities import Floats
 
 IN_LISTS = "."
@@ -19,7 +20,26 @@ IN_LISTS = "."
 
 def packed(parts: Sequence[Part]) -> pa.Table:
     """Return the answers of chunks, one after another, as a table; columns in which nothing is are left out."""
-    return joined([_packed(each) for each in parts])
+    return _packed(parts[0] if len(parts) == 1 else _in_a_row(parts))
+
+
+def _in_a_row(parts: Sequence[Part]) -> Part:
+    sizes = [len(part.text["status"]) for part in parts]
+    firsts = [0, *accumulate(sizes)]
+    names = dict.fromkeys(name for part in parts for name in part.numbers)
+    missing = [np.full(size, np.nan) for size in sizes]
+    numbers = {
+        name: np.concatenate(
+            [part.numbers.get(name, none) for part, none in zip(parts, missing, strict=True)]
+        )
+        for name in names
+    }
+    text = {name: [word for part in parts for word in part.text[name]] for name in parts[0].text}
+    kept: dict[str, KeptRows] = {}
+    for first, part in zip(firsts, parts, strict=False):
+        for kind, rows in part.kept.items():
+            kept.setdefault(kind, {}).update({first + row: columns for row, columns in rows.items()})
+    return Part(text, numbers, kept)
 
 
 def joined(tables: Sequence[pa.Table]) -> pa.Table:

@@ -115,6 +115,7 @@ class StudyRun:
         )
         found = replace(found, verdicts=self._verdicts(found))
         folder.write_account(folder.account() | {"expect": [asdict(each) for each in found.verdicts]})
+        folder.write_study()
         return replace(found, account=folder.account())
 
     def _solve(self, curves: list[StudyCurve]) -> tuple[Solving, bool]:

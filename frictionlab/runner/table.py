@@ -17,7 +17,6 @@ from frictionlab.runner.words import column_in_si_words
 from frictionlab.scene.units import scaled_parameters
 from frictionlab.study.grid import StudyCurve
 from frictionlab.values.columns import (
-    ALWAYS,
     BELT_SPEEDS,
     RESULTS,
     SCALED,
@@ -166,16 +165,6 @@ def result_frame(answers: pa.Table, given: Inputs, names: Collection[str]) -> pd
         if not frame[name].isna().all():  # else words of other rows
             frame[name] = _column_of_words_or_numbers(frame[name])
     return frame
-
-
-def without_empty(table: pd.DataFrame) -> pd.DataFrame:
-    """The table without the result columns that no row has."""
-    return table.drop(columns=[n for n in table.columns if may_be_left_out(n) and table[n].isna().all()])
-
-
-def may_be_left_out(name: str) -> bool:
-    """Whether a column is left out where no row has it: a result that not every table has."""
-    return (name in RESULTS or name in SI) and name not in ALWAYS
 
 
 def whole(table: pd.DataFrame) -> pd.DataFrame:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -14,7 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from frictionlab.runner.csv_text import as_csv
-from frictionlab.runner.files import SaveError
+from frictionlab.runner.files import SaveError, written_whole
 from frictionlab.runner.folder import RunFolder
 
 ROWS_OF_TEXT = 10_000
@@ -30,9 +29,7 @@ class TableFiles:
 
     def __init__(self, folder: RunFolder | None, as_csv: bool = True) -> None:
         self._folder, self._as_csv = folder, as_csv
-        self._open: dict[Path, Any] = {}
-        self._begun: dict[Path, Path] = {}
-        self._files: list[Any] = []
+        self._files, self._open = ExitStack(), dict[Path, Any]()
         self._problem: SaveError | None = None
 
     def __enter__(self) -> Self:
@@ -41,19 +38,19 @@ class TableFiles:
         return self
 
     def add_rows(self, table: pd.DataFrame) -> None:
-        """The next rows of the table."""
+        """Write the next rows of the table."""
         if self._folder is not None:
             self._add(self._folder.table, table, self._add_parquet)
         if self._folder is not None and self._as_csv:
             self._add(self._folder.csv_file, table, self._add_text)
 
     def add_orbits(self, orbits: pd.DataFrame | None) -> None:
-        """The next rows of the orbits, where there are any."""
+        """Write the next rows of the orbits, where there are any."""
         if self._folder is not None and orbits is not None:
             self._add(self._folder.orbits_file, orbits, self._add_parquet)
 
     def add_harmonics(self, harmonics: pd.DataFrame | None) -> None:
-        """The next rows of the harmonics, where they are kept."""
+        """Write the next rows of the harmonics, where they are kept."""
         if self._folder is not None and harmonics is not None:
             self._add(self._folder.harmonics_file, harmonics, self._add_text)
 
@@ -63,53 +60,35 @@ class TableFiles:
         return self._folder is not None and self._folder.harmonics_file in self._open
 
     def _add(self, path: Path, table: pd.DataFrame, write: Callable[[Path, pd.DataFrame], None]) -> None:
-        if self._problem is not None:
-            return
         try:
-            write(path, table)
+            if self._problem is None:
+                write(path, table)
         except OSError as problem:
             self._problem = SaveError(f"cannot write {path}: {problem.strerror or problem}")
+        except SaveError as problem:
+            self._problem = problem
 
     def _add_parquet(self, path: Path, table: pd.DataFrame) -> None:
-        assert self._folder is not None
-        writer = self._open.get(path)
-        if writer is None:
-            content = pa.Table.from_pandas(table, _with_text(table), preserve_index=False)
-            writer = self._open[path] = pq.ParquetWriter(self._opened(path), content.schema)
-        else:
-            content = pa.Table.from_pandas(table, writer.schema, preserve_index=False)
-        writer.write_table(content)
+        if path not in self._open:
+            schema = pa.Table.from_pandas(table, _with_text(table), preserve_index=False).schema
+            file = self._files.enter_context(written_whole(path))
+            self._open[path] = self._files.enter_context(pq.ParquetWriter(file, schema))
+        writer = self._open[path]
+        writer.write_table(pa.Table.from_pandas(table, writer.schema, preserve_index=False))
 
     def _add_text(self, path: Path, table: pd.DataFrame) -> None:
         first = path not in self._open
         if first:
-            self._open[path] = self._beginning(path).open("wb")
+            self._open[path] = self._files.enter_context(written_whole(path))
         for start in range(0, max(1, len(table)), ROWS_OF_TEXT):
             text = as_csv(table.iloc[start : start + ROWS_OF_TEXT], header=first and start == 0)
             self._open[path].write(text)
 
-    def _opened(self, path: Path) -> Any:
-        """A file of our own: arrow opens none whose name is no text."""
-        self._files.append(self._beginning(path).open("wb"))
-        return self._files[-1]
-
-    def _beginning(self, path: Path) -> Path:
-        self._begun[path] = path.with_name(f".{path.name}.{os.getpid()}")
-        return self._begun[path]
-
     def __exit__(
         self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
     ) -> None:
-        for file in [*self._open.values(), *self._files]:
-            try:
-                file.close()
-            except OSError as full:
-                self._problem = self._problem or SaveError(f"cannot write the table: {full.strerror or full}")
-        for path, temporary in self._begun.items():
-            if problem is None:
-                self._add(path, pd.DataFrame(), lambda path, _: os.replace(self._begun[path], path))
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
+        found = problem or self._problem  # each file is then removed, else put in its place, the table last
+        self._files.__exit__(None if found is None else type(found), found, trace)
         if problem is None and self._problem is not None:
             raise self._problem
 

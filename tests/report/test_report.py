@@ -26,7 +26,7 @@ from frictionlab.report.figures import pictures
 from frictionlab.report.page import report, wall, write_index, write_report
 from frictionlab.report.sources import bibtex, sources
 from frictionlab.report.tables import html, symbol_html
-from frictionlab.runner import api, engine
+from frictionlab.runner import engine, study_run
 from frictionlab.runner.files import FolderError
 from frictionlab.study.bibliography import read_bibtex
 from frictionlab.values.columns import _IN_SI, _NAMES
@@ -81,7 +81,7 @@ def stop(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> fl.Run:
     monkeypatch.setattr(engine.Sent, "collect", collect_one)
     study = PLAIN | {"sweep": {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0]}}
     study |= {"expect": [{"column": "mean_friction", "below": 1}]}
-    with pytest.raises(api.Interrupted):
+    with pytest.raises(study_run.Interrupted):
         fl.run(study, out=tmp_path / "stopped")
     return fl.load(tmp_path / "stopped")
 

@@ -23,7 +23,7 @@ from pandas.testing import assert_frame_equal
 from profiles import deep, some
 
 import frictionlab as fl
-from frictionlab.runner import api, folder, table_files
+from frictionlab.runner import files, folder, study_run
 from frictionlab.runner.files import FolderError, SaveError
 from frictionlab.runner.packing import kept_of, packed
 from frictionlab.runner.pieces import Task, blocks_of, cuts, is_long
@@ -353,7 +353,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(
     stopped = threading.Event()
     trouble({40.0: lambda: stopped.wait(60.0)})
     slow = study(methods=[{"kind": "fake", "pause": 0.05}], sweep=MANY)
-    with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
+    with ThreadPoolExecutor(1) as pool, pytest.raises(study_run.Interrupted) as caught:
         fl.run(slow, out=tmp_path / "out", executor=pool, progress=stop)
 
     table = caught.value.run.table
@@ -440,7 +440,7 @@ def disk_full_for(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
                 raise OSError(errno.ENOSPC, "No space left on device")
             whole(source, target)
 
-        monkeypatch.setattr(table_files.os, "replace", replace)
+        monkeypatch.setattr(files.os, "replace", replace)
 
     whole = os.replace
     return fill
@@ -452,7 +452,7 @@ def test_a_full_disk_leaves_the_table_in_hand(
     tmp_path: Path, disk_full_for: Callable[[str], None], name: str
 ) -> None:
     disk_full_for(name)
-    with pytest.raises(api.UnsavedError, match=rf"cannot write .*{name}: No space left") as caught:
+    with pytest.raises(study_run.UnsavedError, match=rf"cannot write .*{name}: No space left") as caught:
         fl.run(study(keep={"orbit": 4}), out=tmp_path / "out")
 
     assert caught.value.run.counts["ok"] == 4

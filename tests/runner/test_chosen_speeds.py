@@ -13,7 +13,7 @@ from pandas.testing import assert_frame_equal
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.runner import api
+from frictionlab.runner import study_run
 from frictionlab.runner.batch import plan
 from frictionlab.runner.chosen_speeds import halves_to_add
 from frictionlab.runner.saved import load as read_saved
@@ -138,7 +138,7 @@ def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
         solve(*given)
 
     monkeypatch.setattr(Solving, "solve", interrupted)
-    with pytest.raises(api.Interrupted) as problem:
+    with pytest.raises(study_run.Interrupted) as problem:
         fl.run(STUDY, out=tmp_path / "run")
     table = problem.value.run.table
     assert set(table["status"]) == {"ok", "killed"}

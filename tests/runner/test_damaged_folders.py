@@ -20,8 +20,8 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts import figures
-from frictionlab.runner.api import run_folder
 from frictionlab.runner.files import FolderError, remove_leftovers
+from frictionlab.runner.folder import run_folder
 from frictionlab.runner.saved import load as read_saved
 from frictionlab.study.load import load_study
 from frictionlab.study.written import yaml_text

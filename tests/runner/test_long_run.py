@@ -16,7 +16,7 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.runner import api, engine, pieces, saved, study_run
+from frictionlab.runner import engine, pieces, saved, study_run
 from frictionlab.runner import gathering as thinned
 from frictionlab.runner.saved import load as read_saved
 from frictionlab.study.load import parse_study
@@ -155,7 +155,7 @@ def test_a_long_run_that_is_interrupted_goes_on(
     collect = engine.Sent.collect
     with monkeypatch.context() as patch:
         patch.setattr(engine.Sent, "collect", collect_one)
-        with pytest.raises(api.Interrupted) as caught:
+        with pytest.raises(study_run.Interrupted) as caught:
             fl.run(study(), out=tmp_path / "run")
     stopped = caught.value.run
     reasons = stopped.table.loc[stopped.table["status"] == "killed", "reason"]

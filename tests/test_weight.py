@@ -17,7 +17,7 @@ LIMITS = {
     "methods": 8017,
     "motion": 4599,
     "report": 1794,
-    "runner": 3756,
+    "runner": 3757,
     "scene": 1706,
     "study": 2796,
     "testing": 1491,

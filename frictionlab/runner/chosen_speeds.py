@@ -138,8 +138,9 @@ def _in_one(rounds: Sequence[Solving], study: Study) -> Solving:
                 whole.scenes.given, each.scenes.given
             )
         pieces += [replace(piece, rows=rows[piece.rows]) for block in one.blocks for piece in block.pieces]
-    found = Solving(curves, rounds[-1].task, rounds[-1].store, blocks=[Block(range(len(curves)), pieces)])
-    found.rest = rounds[-1].rest
+    last = rounds[-1]
+    found = Solving(curves, last.task, last.store, last.keys, [Block(range(len(curves)), pieces)])
+    found.rest = last.rest
     return found
 
 

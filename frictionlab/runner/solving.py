@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 
 import numpy as np
@@ -25,7 +25,7 @@ from frictionlab.values.notes import Mistake, StudyError
 class Solving:
     """Curves cut into pieces, and where their answers are.
 
-    law_code: as for ``Keys``. blocks: pieces with the rows of these curves, where they were cut before. computed,
+    blocks: pieces with the rows of these curves, where they were cut before. computed,
     found: points that were solved, and those whose answers were there. rest: why rows without an answer have none;
     '' where none is missing.
     """
@@ -35,14 +35,14 @@ class Solving:
         curves: Sequence[StudyCurve],
         task: Task,
         store: Store | None = None,
-        law_code: Mapping[str, str] | None = None,
+        keys: Keys | None = None,
         blocks: Sequence[Block] | None = None,
     ) -> None:
         self.curves, self.task, self.store = curves, task, store or Store()
         self.blocks = blocks_of(curves, task) if blocks is None else blocks
         self.computed = self.found = 0
         self.rest = ""
-        self._keys = Keys(law_code or {})
+        self.keys = keys or Keys({})
 
     @property
     def points(self) -> int:
@@ -61,7 +61,7 @@ class Solving:
         forecast, points = Forecast(own), sum(map(len, own))
 
         def take(piece: Piece, solved: Solved) -> None:
-            self.store.put(piece.key, solved.answers)
+            self.store.put(self._key_of(piece), solved.answers)
             self.computed += len(piece)
             forecast.came_back(piece, solved.seconds)
 
@@ -79,12 +79,12 @@ class Solving:
         """Yield the pieces without an answer, of equal ones the first, with what methods are given."""
         sent = set[str]()
         for piece in own:
-            piece.key = self._keys.of(piece)
-            if piece.key in sent or self.store.columns(piece.key):
+            key = self._key_of(piece)
+            if key in sent or self.store.columns(key):
                 self.found += len(piece)
                 forecast.found(piece)
             else:
-                sent.add(piece.key)
+                sent.add(key)
                 chunks = piece.chunks()
                 forecast.sent(piece, chunks)
                 yield piece, chunks
@@ -99,9 +99,13 @@ class Solving:
             self.rest = f"a worker died: {problem}"
         return self.rest == "interrupted"
 
+    def _key_of(self, piece: Piece) -> str:
+        piece.key = piece.key or self.keys.of(piece)
+        return piece.key
+
     def key(self, what: str, *how: object) -> str:
         """Return the key of a table that is made from all answers, and nothing else."""
-        keys = [piece.key for block in self.blocks for piece in block.pieces]
+        keys = [self._key_of(piece) for block in self.blocks for piece in block.pieces]
         mark = "?" if any(key.startswith("?") for key in keys) else ""
         return mark + hashlib.sha256(repr((what, how, keys)).encode()).hexdigest()
 
@@ -109,7 +113,7 @@ class Solving:
 
     def columns(self) -> list[str]:
         """Return the names of the columns that some row has."""
-        keys = dict.fromkeys(piece.key for block in self.blocks for piece in block.pieces)
+        keys = dict.fromkeys(self._key_of(piece) for block in self.blocks for piece in block.pieces)
         return list(dict.fromkeys([*ALWAYS, *(name for key in keys for name in self.store.columns(key))]))
 
     def columns_of(self, kind: str) -> list[str]:
@@ -128,7 +132,7 @@ class Solving:
         return found.unify_dictionaries().combine_chunks().take(pa.array(order))
 
     def _answer(self, piece: Piece) -> pa.Table:
-        found = self.store.get(piece.key) if piece.key else None
+        found = self.store.get(self._key_of(piece))
         if found is None and not self.rest:
             return solve_each(piece.chunks()).answers
         return unanswered(len(piece), self.rest) if found is None else found
@@ -159,5 +163,5 @@ def run_share(
         raise StudyError([Mistake("--part", None, "", what)])
     with workforce(executor) as force:
         task = task_of(study, limited=force.elsewhere)
-        solving = Solving(list(study.curves()), task, store, study.code)
+        solving = Solving(list(study.curves()), task, store, Keys(study.code))
         return solving, solving.solve(force, progress, part)

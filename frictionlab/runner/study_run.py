@@ -26,7 +26,7 @@ from frictionlab.runner.progress import Meter, Progress, silent
 from frictionlab.runner.results import Reader, Results
 from frictionlab.runner.saved import read_folder, seconds_of
 from frictionlab.runner.solving import Solving
-from frictionlab.runner.store import Store
+from frictionlab.runner.store import Keys, Store
 from frictionlab.runner.table import whole
 from frictionlab.runner.table_files import TableFiles, read_columns_of_file
 from frictionlab.runner.workforce import Workforce, workforce
@@ -108,7 +108,7 @@ class StudyRun:
         """Return the run as the folder holds it, judged anew; nothing of it is solved."""
         found = read_folder(folder, self.study)
         self.study = found.study
-        solving = Solving(list(self.study.curves()), task_of(self.study), self.store, self.study.code)
+        solving = Solving(list(self.study.curves()), task_of(self.study), self.store, Keys(self.study.code))
         made = self._made(solving, found)
         found = replace(
             found, readers={**found.readers, "onsets": made["onsets"], "boundaries": made["boundaries"]}
@@ -123,7 +123,7 @@ class StudyRun:
         before, tell = self._points, self.ways.progress
         with workforce(self.ways.executor) as force:
             task = task_of(self.study, limited=force.elsewhere)
-            solving = Solving(curves, task, self.store, self.study.code)
+            solving = Solving(curves, task, self.store, Keys(self.study.code))
             self._points += solving.points
             stopped = solving.solve_or_say_why_not(
                 force,

@@ -246,3 +246,11 @@ def test_a_cache_that_cannot_be_written_costs_nothing_but_itself(tmp_path: Path)
     done = fl.run(study(), out=tmp_path / "a", cache=tmp_path / "file")
 
     assert done.counts == {"ok": 300}
+
+
+def test_onsets_of_a_run_that_is_taken_over_are_its_own(tmp_path: Path) -> None:
+    for out, mu in (("a", 0.4), ("b", 0.2), ("a", 0.4), ("b", 0.2)):
+        done = fl.run(study(laws=[{"kind": "coulomb", "mu": mu}]), out=tmp_path / out)
+        assert done.onsets is not None
+        assert set(done.onsets["law.mu"]) == {mu}
+    assert done.computed == 0

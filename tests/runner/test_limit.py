@@ -80,12 +80,6 @@ def test_work_within_a_limit_gives_its_result_or_its_error():
         within(0.05, time.sleep, 2.0)
 
 
-def test_a_point_that_never_ends_is_killed(released):
-    done = run_elsewhere(STUDY | {"sweep": {"scene.belt_speed": [6]}})
-
-    assert done.table["status"].tolist() == ["killed"]
-
-
 def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypatch):
     allowed = []
     monkeypatch.setattr(

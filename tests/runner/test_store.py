@@ -249,8 +249,8 @@ def test_a_cache_that_cannot_be_written_costs_nothing_but_itself(tmp_path: Path)
 
 
 def test_onsets_of_a_run_that_is_taken_over_are_its_own(tmp_path: Path) -> None:
-    for out, mu in (("a", 0.4), ("b", 0.2), ("a", 0.4), ("b", 0.2)):
-        done = fl.run(study(laws=[{"kind": "coulomb", "mu": mu}]), out=tmp_path / out)
-        assert done.onsets is not None
+    sweep = {"scene.belt_speed": [30, 40, 60]}
+    for out, mu in 2 * [("a", 0.4), ("b", 0.2)]:
+        done = fl.run(study(laws=[{"kind": "coulomb", "mu": mu}], sweep=sweep), out=tmp_path / out)
         assert set(done.onsets["law.mu"]) == {mu}
     assert done.computed == 0

@@ -77,13 +77,11 @@ def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
 def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from frictionlab.runner import store as home
-
     study = fl.run(STUDY).study
-    before = home.code_digest(study)
-    assert home.code_digest(study) == before
+    before = code_digest.code_digest(study)
+    assert code_digest.code_digest(study) == before
     monkeypatch.setattr(registry, "method_code", lambda name: "edited")
-    edited = home.code_digest(study)
-    monkeypatch.setattr(home, "own_code", lambda: "edited")
+    edited = code_digest.code_digest(study)
+    monkeypatch.setattr(code_digest, "own_code", lambda: "edited")
 
-    assert len({before, edited, home.code_digest(study)}) == 3
+    assert len({before, edited, code_digest.code_digest(study)}) == 3

@@ -7,7 +7,7 @@ import re
 import stat
 import subprocess
 import sys
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -97,11 +97,10 @@ def test_where_workers_are_lost_for_good_the_rest_is_killed_and_what_is_solved_i
     tmp_path: Path,
 ) -> None:
     pool = LosesWorkers(0, OSError)
-    for_good: Executor = pool
     done_before = fl.run(STUDY | {"laws": STUDY["laws"][:1]}, out=tmp_path / "one")
     pool.left = 1000
 
-    stopped = fl.run(STUDY, out=tmp_path / "both", executor=for_good)
+    stopped = fl.run(STUDY, out=tmp_path / "both", executor=pool)
 
     assert done_before.computed == 500
     assert stopped.counts == {"ok": 500, "killed": 500}

@@ -133,7 +133,7 @@ def _killed(seconds: float) -> Part:
 
 TICK = 0.1
 """Seconds between two looks at what goes on."""
-GRACE = 1.5
+GRACE = 1.0
 """Time [s] that an interrupted run waits for pieces in progress; most need far less."""
 MOST_SENT = 256
 """Pieces that are out at once: enough for the workers of a cluster, few enough to be held in memory."""

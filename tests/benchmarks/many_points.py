@@ -3,7 +3,7 @@
 Coulomb friction on a line, every column, curves of up to 50,000 belt speeds, from 1e2 points to LARGEST (1e6); or
 SIDE drive frequencies by as many normal loads, the shapes of their curves of 40 points drawn as a map. Each run is a
 command of its own into an empty folder, with kernels compiled before. Wall and processor time, the most memory it
-held, and the sizes of what it wrote; then the same study into another folder, which finds every chunk.
+held, and the sizes of what it wrote; then the same study into another folder, which finds every piece.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def main(studies: dict[int, str]) -> None:
     run_once, _, _, _ = measured(study(100))  # kernels are compiled here
     assert run_once.wall > 0.0
     print(
-        "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | chunks, MB | found again, s |"
+        "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | pieces, MB | found again, s |"
     )
     print("|---|---|---|---|---|---|---|---|")
     for points, text in studies.items():

@@ -109,3 +109,20 @@ def test_deflections_that_yield_are_the_slider_that_they_make() -> None:
 def test_the_first_sample_tells_how_far_the_bristle_is_bent() -> None:
     found = friction_along(fl.Jenkins(mu=0.4, stiffness=4.0), TIMES[:2], np.array([0.0, 1e-3]), 0.2)
     assert found[1] == pytest.approx(0.204, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", [0, 2, 6])
+def test_laws_with_other_blocks_are_ranked_on_the_same_rows(seed: int) -> None:
+    """A short record, whose residuals are correlated over other lengths for each law."""
+    draw, times = np.random.default_rng(seed), np.arange(200.0)
+    slip = 3.0 * np.sin(2.0 * np.pi * times / 170) + 0.3 * np.sin(2.0 * np.pi * times / 37)
+    bent, noise, friction = 0.0, 0.0, []
+    for step in np.diff(slip, prepend=0.0):
+        bent, noise = float(np.clip(bent + step, -1.0, 1.0)), 0.95 * noise + 0.02 * draw.normal()
+        friction.append(0.5 * bent + noise)
+    laws = [fl.Jenkins(mu=0.5, stiffness=0.5), fl.Dahl(mu=0.5, stiffness=0.5)]
+    data = {"time": times, "slip": slip, "friction": np.array(friction)}
+    found = fl.fit(data, laws, free={"mu": (0.1, 2.0), "stiffness": (0.1, 5.0)})
+
+    assert found.sentences[0].startswith("Jenkins fits with an rms of ")
+    assert len({len(each.left_out.squares) for each in found.fitted}) == 1

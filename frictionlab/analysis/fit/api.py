@@ -193,8 +193,10 @@ def fit_measured(
             )
         else:
             fitted.append(FittedLaw(residuals, found, *blocks_of(measured, raw)))
+    if fitted:  # laws are ranked on the same rows left out: the blocks of that law which has the fewest
+        fewest = min((each.blocks for each in fitted), key=lambda blocks: int(blocks.max()))
+        fitted = [replace(each, parts=fewest) for each in fitted]
     if not fitted:
-        raise ValueError(
-            f"no law could be fitted: {'; '.join(f'{law}: {why}' for law, why in failed.items())}"
-        )
+        told = "; ".join(f"{law}: {why}" for law, why in failed.items())
+        raise ValueError(f"no law could be fitted: {told}")
     return FittedLaws(measured, tuple(fitted), failed)

@@ -36,11 +36,8 @@ def blocks_of(measured: Measurements, residuals: Floats) -> tuple[NDArray[np.int
         return cycles, "cycles of the slip"
     order = np.argsort(measured.table[measured.along].to_numpy(dtype=float), kind="stable")
     length = TIMES_AS_LONG * correlation_length(residuals[order])
-    count = int(
-        np.clip(
-            len(residuals) / length, min(FEWEST, len(residuals)), MOST if measured.is_path else len(residuals)
-        )
-    )
+    most = MOST if measured.is_path else len(residuals)
+    count = int(np.clip(len(residuals) / length, min(FEWEST, len(residuals)), most))
     cut = np.empty(len(residuals), np.int64)
     cut[order] = np.arange(len(residuals)) * count // len(residuals)
     return cut, "runs of correlated residuals" if count < len(residuals) else "single points"

@@ -32,13 +32,14 @@ from frictionlab.values.quantities import Floats
 class FittedLaw:
     """One law at its optimum; errors, profiles and what it foretells are found when asked for.
 
-    blocks: of each row; blocks_from: a word on where they are from.
+    blocks: of each row; blocks_from: a word on where they are from. parts: what is left out in turn, the same of all laws.
     """
 
     residuals: Residuals
     found: SearchEnds
     blocks: NDArray[np.int64]
     blocks_from: str
+    parts: NDArray[np.int64] | None = None
 
     @property
     def model(self) -> Model:
@@ -87,7 +88,8 @@ class FittedLaw:
     @cached_property
     def left_out(self) -> LeftOut:
         """How well it foretells blocks that it was not fitted to."""
-        return without_blocks(self.residuals, self.found.best, self.blocks)
+        parts = self.blocks if self.parts is None else self.parts
+        return without_blocks(self.residuals, self.found.best, parts)
 
     @property
     def values(self) -> dict[str, float]:

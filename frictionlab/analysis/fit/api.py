@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
@@ -193,9 +194,9 @@ def fit_measured(
             )
         else:
             fitted.append(FittedLaw(residuals, found, *blocks_of(measured, raw)))
-    if fitted:  # laws are ranked on the same rows left out: the blocks of that law which has the fewest
-        fewest = min((each.blocks for each in fitted), key=lambda blocks: int(blocks.max()))
-        fitted = [replace(each, parts=fewest) for each in fitted]
+    # laws are ranked on the same rows left out: the blocks of that law which has the fewest
+    fewest = min((each.blocks for each in fitted), key=np.max, default=None)
+    fitted = [replace(each, parts=fewest) for each in fitted]
     if not fitted:
         told = "; ".join(f"{law}: {why}" for law, why in failed.items())
         raise ValueError(f"no law could be fitted: {told}")

@@ -32,7 +32,7 @@ from frictionlab.values.quantities import Floats
 class FittedLaw:
     """One law at its optimum; errors, profiles and what it foretells are found when asked for.
 
-    blocks: of each row; blocks_from: a word on where they are from. parts: blocks that are left out, the same for all laws.
+    blocks: of each row; blocks_from: a word on where they are from. parts: blocks left out, the same for all.
     """
 
     residuals: Residuals

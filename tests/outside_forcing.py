@@ -42,10 +42,31 @@ class _Wave(NamedTuple):
     rate: float
     phase: float
 
+    lifted: float = 0.0
+    """Mean over the period, taken off a velocity and a normal load."""
+
+    def points(self) -> list[tuple[float, float]]:
+        """Shares of the period and values there of a waveform that is straight between them."""
+        if not isinstance(self.waveform, dict):
+            return []
+        if "square" in self.waveform:
+            duty = self.waveform["square"]["duty"]
+            return [(0.0, 1.0), (duty, 1.0), (duty, -1.0), (1.0, -1.0)]
+        if "sawtooth" in self.waveform:
+            half = 0.5 * self.waveform["sawtooth"]["width"]
+            return [(half, 1.0), (1.0 - half, -1.0)]
+        return [(share, value) for share, value in self.waveform.get("points", ())]
+
+    def mean(self) -> float:
+        """Mean of the waveform over its period."""
+        points = self.points()
+        pairs = itertools.pairwise([*points, *((share + 1.0, value) for share, value in points[:1])])
+        return sum(0.5 * (low + high) * (b - a) for (a, low), (b, high) in pairs)
+
     def sines(self) -> list[tuple[float, float, float]]:
         if self.waveform == "sine":
             return [(self.rate, self.phase, self.amplitude)]
-        if not isinstance(self.waveform, dict):
+        if not isinstance(self.waveform, dict) or "harmonics" not in self.waveform:
             return []
         return [
             (
@@ -57,7 +78,10 @@ class _Wave(NamedTuple):
         ]
 
     def corners(self, period: float) -> list[float]:
-        angles = CORNERS.get(self.waveform, ()) if isinstance(self.waveform, str) else ()
+        if isinstance(self.waveform, str):
+            angles = CORNERS.get(self.waveform, ())
+        else:
+            angles = tuple(2.0 * math.pi * share for share, _ in self.points())
         turns = round(period * self.rate / (2.0 * math.pi))
         first = [((angle - self.phase) / (2.0 * math.pi)) % 1.0 for angle in angles]
         return [(share + turn) * period / turns for share in first for turn in range(turns)]
@@ -73,6 +97,14 @@ class _Wave(NamedTuple):
         elif self.waveform == "sawtooth":
             value = math.remainder(middle, 2.0 * math.pi) / math.pi
             slope = self.rate / math.pi
+        elif points := self.points():
+            share, first = (middle / (2.0 * math.pi)) % 1.0, points[0]
+            closed = [(points[-1][0] - 1.0, points[-1][1]), *points, (first[0] + 1.0, first[1])]
+            (a, low), (b, high) = next(
+                pair for pair in itertools.pairwise(closed) if pair[0][0] < share < pair[1][0]
+            )
+            slope = (high - low) / (b - a) * self.rate / (2.0 * math.pi)
+            value = low + (high - low) * (share - a) / (b - a) - self.lifted
         else:
             return 0.0, 0.0
         return self.amplitude * (value - slope * 0.5 * (end - start)), self.amplitude * slope
@@ -121,7 +153,9 @@ def _waves(scene, base, ratios):
         ratio = Fraction(part.get("frequency_ratio", 1)).limit_denominator(1000)
         ratios.append(ratio)
         phase = math.radians(part.get("phase", 0.0))
-        return _Wave(weights, amplitude, part.get("waveform", "sine"), base * float(ratio), phase)
+        keeps_none = "velocity_amplitude" in part or part is scene.get("normal_load_variation")
+        found = _Wave(weights, amplitude, part.get("waveform", "sine"), base * float(ratio), phase)
+        return found._replace(lifted=found.mean()) if keeps_none else found
 
     def force(part):
         if "amplitude" in part:

@@ -124,7 +124,7 @@ def _normal_load(scene: Any) -> Iterator[str]:
     part = scene.normal_load_variation
     if part is None:
         return
-    least = signal_of(part.waveform, 1.0, 0.0).extremes(FULL_TURN)[0]
+    least = signal_of(part.waveform, 1.0, 0.0, mean=False).extremes(FULL_TURN)[0]
     if not 1.0 + part.amplitude * least > 1e-9:
         yield (
             "normal_load_variation.amplitude: the normal load must stay positive over the whole period, here "

@@ -90,11 +90,16 @@ def keeps_stiffness(part: NormalLoadVariation | None) -> bool:
 
 
 def _signal(part: Any, omega: float) -> Signal:
-    """Return the signal of a part, its waveform times its size; ``omega`` is the frequency of the drive."""
+    """Return the signal of a part, its waveform times its size; ``omega`` is the frequency of the drive.
+
+    A force keeps the mean of its waveform; a velocity and the normal load have theirs in ``belt_speed`` and
+    ``normal_load``.
+    """
     if part is None:
         return Signal()
     ratio = getattr(part, "frequency_ratio", None) or 1.0
-    return signal_of(part.waveform or SINE, omega * ratio, part.phase).scaled(part.size(omega))
+    form, keeps_mean = part.waveform or SINE, isinstance(part, Drive | Load)
+    return signal_of(form, omega * ratio, part.phase, keeps_mean).scaled(part.size(omega))
 
 
 def _pair(part: Any, across: Any, omega: float) -> tuple[Signal, Signal]:

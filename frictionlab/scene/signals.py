@@ -155,8 +155,12 @@ def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: floa
     return 1j * turn * (value * even + slope * odd)
 
 
-def signal_of(form: Form, frequency: float, phase: float) -> Signal:
-    """Return the signal of a waveform of unit size at this circular frequency; phase in degrees."""
+def signal_of(form: Form, frequency: float, phase: float, mean: bool = True) -> Signal:
+    """Return the signal of a waveform of unit size at this circular frequency; phase in degrees.
+
+    mean: whether it keeps its mean.
+    """
+    lifted = 0.0 if mean else form.mean
     start, period = math.radians(phase), FULL_TURN / frequency
     waves = tuple(
         Wave(
@@ -167,8 +171,8 @@ def signal_of(form: Form, frequency: float, phase: float) -> Signal:
     lines = sorted(
         Segment(
             _wrapped((float(at) * FULL_TURN - start) / frequency, period),
-            float(value),
-            slope / FULL_TURN * frequency,
+            float(value) - lifted,
+            float(slope) / FULL_TURN * frequency,
         )
         for at, value, slope in form.lines
     )

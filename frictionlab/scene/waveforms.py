@@ -15,6 +15,8 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
 
+MOST_POINTS = 2000
+"""Largest number of points between which a waveform is straight."""
 MOST_TERMS = 64
 """Largest number of terms in a sum of harmonics, and the largest order among them."""
 LONGEST_COMMON = 64
@@ -27,8 +29,8 @@ class WaveLine(NamedTuple):
     """Straight part of a waveform: start [turns, from 0 to below 1], value there, slope per turn."""
 
     start: Fraction
-    value: int
-    slope: int
+    value: Fraction | int
+    slope: Fraction | int
 
 
 class WaveShape(NamedTuple):
@@ -84,10 +86,14 @@ def _short(number: float) -> str:
 
 
 class Form(NamedTuple):
-    """Waveform: a shape by its name, or a sum of harmonics."""
+    """Waveform: a shape by its name, a sum of harmonics, or straight lines between points.
+
+    numbers: what the lines of a square wave or a sawtooth are made of, or shares of the period and values there.
+    """
 
     shape: str
     terms: tuple[Term, ...] = ()
+    numbers: tuple[float, ...] = ()
 
     @staticmethod
     def given_as() -> str:
@@ -100,21 +106,54 @@ class Form(NamedTuple):
 
     def plain(self) -> Any:
         """Return the form as a study gives it."""
+        if self.shape == "points":
+            return {"points": [list(pair) for pair in self._pairs]}
+        if self.numbers:
+            return {self.shape: {_SHARES[self.shape]: self.numbers[0]}}
         return {"harmonics": [term._asdict() for term in self.terms]} if self.terms else self.shape
 
     def __str__(self) -> str:
-        """Return the form for one cell of a table: the name, or the sum as a formula."""
+        """Return the form for one cell of a table: the name with its share, the points, or the sum as a formula."""
+        if self.shape == "points":
+            return f"points {' '.join(f'{share!r},{value!r}' for share, value in self._pairs)}"
+        if self.numbers:
+            return f"{self.shape} {_SHARES[self.shape]} {self.numbers[0]!r}"
         return " + ".join(map(str, self.terms)) if self.terms else self.shape
 
     @property
     def words(self) -> str:
         """Words for it in a sentence."""
+        if self.shape == "points":
+            return f"straight lines between {len(self._pairs)} points"
+        if self.numbers:
+            return f"{WAVE_SHAPES[self.shape].words} of {_SHARES[self.shape]} {self.numbers[0]:g}"
         return str(self) if self.terms else WAVE_SHAPES[self.shape].words
+
+    @property
+    def _pairs(self) -> list[tuple[float, float]]:
+        return list(zip(self.numbers[::2], self.numbers[1::2], strict=True))
 
     @property
     def lines(self) -> tuple[WaveLine, ...]:
         """Straight lines between its corners; none if it is a sum of sines."""
+        if self.numbers:
+            return _lines_between(self._corners())
         return () if self.terms else WAVE_SHAPES[self.shape].lines
+
+    def _corners(self) -> list[tuple[Fraction, Fraction]]:
+        """Return the shares of the period and the values at its corners, a jump as two of the same share."""
+        if self.shape == "points":
+            return [(Fraction(share), Fraction(value)) for share, value in self._pairs]
+        share, one = Fraction(self.numbers[0]), Fraction(1)
+        if self.shape == "square":
+            return [(0 * one, one), (share, one), (share, -one), (one, -one)]
+        return [(share / 2, one), (1 - share / 2, -one)]
+
+    @property
+    def mean(self) -> float:
+        """Mean over the period."""
+        ends = zip(self.lines, self.ends, strict=True)
+        return float(sum((length * (line.value + end) / 2 for line, (length, end) in ends), Fraction(0)))
 
     @property
     def waves(self) -> tuple[Term, ...]:
@@ -142,31 +181,92 @@ class Form(NamedTuple):
         return opposite == {*self.lines} and all(term.order % 2 == 1 for term in self.waves)
 
 
-_TERM = re.compile(r"(?:(\S+) )?sin\((?:(\d+) )?theta(?: \+ (\S+) deg)?\)")
+_SHARES = {"square": "duty", "sawtooth": "width"}
+"""Shapes that have a share of the period, and its name: how long a square wave is 1, how long a sawtooth rises."""
+_MEANINGS = {
+    "square": "1 for a share of the period, else -1",
+    "sawtooth": "rises for a share of it, else falls",
+}
+
+
+def _lines_between(corners: list[tuple[Fraction, Fraction]]) -> tuple[WaveLine, ...]:
+    """Return the lines from corner to corner, and from the last one to the first of the next period."""
+    share, value = corners[0]
+    following = [*corners[1:], (share + 1, value)]
+    found = [
+        WaveLine(start % 1, first, (last - first) / (end - start))
+        for (start, first), (end, last) in zip(corners, following, strict=True)
+        if end > start
+    ]
+    return tuple(sorted(found))
+
+
+_TERM = re.compile(r"(?:(-?[\d.]\S*) )?sin\((?:(\d+) )?theta(?: \+ (\S+) deg)?\)")
 
 
 def told(text: str) -> Form:
     """Return the form that the text in a cell of a table names or writes as a formula. Raises ValueError."""
     terms = [Term(int(b or 1), float(a or 1.0), float(c or 0.0)) for a, b, c in _TERM.findall(text)]
-    return Form("harmonics", tuple(terms)) if terms else form_of(text)
+    if terms:
+        return Form("harmonics", tuple(terms))
+    shape, *rest = text.split()
+    if shape == "points":
+        return form_of({"points": [[*map(float, pair.split(","))] for pair in rest]})
+    return form_of({shape: {rest[0]: float(rest[1])}} if rest else shape)
 
 
 SINE = Form("sine")
 
 
 def form_of(value: Any) -> Form:
-    """Return the waveform of a value in a study.
-
-    Raises ValueError for a value that is neither a shape nor a sum of harmonics, with the path of the mistake
-    in it.
-    """
+    """Return the waveform of a value in a study. Raises ValueError with the path of the mistake in it."""
     if isinstance(value, Form):
         return value
     if isinstance(value, str) and value in WAVE_SHAPES:
         return Form(value)
+    if isinstance(value, Mapping) and len(value) == 1:
+        ((kind, given),) = value.items()
+        if kind in _SHARES:
+            return Form(kind, (), (_share(kind, given),))
+        if kind == "points":
+            return _through_points(given)
     if isinstance(value, Mapping):
         return _sum_of_harmonics(value)
-    raise ValueError(f"must be {', '.join(map(repr, WAVE_SHAPES))} or {{harmonics: [...]}}")
+    raise ValueError(
+        f"must be {', '.join(map(repr, WAVE_SHAPES))}, {{square: {{duty: 0.3}}}}, {{sawtooth: {{width: 0.3}}}}, "
+        f"{{points: [[0, 0], ...]}} or {{harmonics: [...]}}"
+    )
+
+
+def _share(kind: str, given: Any) -> float:
+    name = _SHARES[kind]
+    if not isinstance(given, Mapping) or [*given] != [name]:
+        raise ValueError(f"{kind}: must be {{{name}: a share of the period}}, got {given!r}")
+    share = given[name]
+    most = "< 1" if kind == "square" else "<= 1"
+    if not _is_number(share) or not (0.0 < share < 1.0 or (share == 1.0 and kind == "sawtooth")):
+        raise ValueError(f"{kind}.{name}: must be > 0 and {most}, got {share!r}")
+    return float(share)
+
+
+_POINTS = (
+    "points are [[share of the period, value], ...], shares rising from 0 to 1, twice the same for a jump"
+)
+
+
+def _through_points(given: Any) -> Form:
+    if not isinstance(given, list | tuple) or not 2 <= len(given) <= MOST_POINTS:
+        raise ValueError(f"points: must be a list of 2 to {MOST_POINTS} pairs; {_POINTS}")
+    for place, pair in enumerate(given):
+        if not isinstance(pair, list | tuple) or len(pair) != 2 or not all(map(_is_number, pair)):
+            raise ValueError(f"points[{place}]: must be two finite numbers, got {pair!r}; {_POINTS}")
+        if not (given[place - 1][0] if place else 0.0) <= pair[0] <= 1.0:
+            raise ValueError(
+                f"points[{place}]: its share of the period must be from that before to 1; {_POINTS}"
+            )
+    if len({pair[1] for pair in given}) == 1:
+        raise ValueError("points: the value never changes")
+    return Form("points", (), tuple(float(number) for pair in given for number in pair))
 
 
 _SUM = "a sum of harmonics is {harmonics: [{order: 1, amplitude: 1, phase: 0}, ...]}"
@@ -223,9 +323,35 @@ _TERM_SCHEMA = {
     "required": ["order", "amplitude"],
     "additionalProperties": False,
 }
+_NUMBER = {"type": "number"}
+
+
+def _object(name: str, meaning: str, schema: dict[str, Any]) -> dict[str, Any]:
+    told = {name: {"description": meaning} | schema}
+    return {"type": "object", "properties": told, "required": [name], "additionalProperties": False}
+
+
 _FORM_SCHEMA = {
     "oneOf": [
         {"enum": list(WAVE_SHAPES)},
+        *(
+            _object(
+                shape,
+                _MEANINGS[shape],
+                _object(share, "share", _NUMBER | {"exclusiveMinimum": 0, "maximum": 1}),
+            )
+            for shape, share in _SHARES.items()
+        ),
+        _object(
+            "points",
+            "shares of the period and values there, straight between",
+            {
+                "type": "array",
+                "minItems": 2,
+                "maxItems": MOST_POINTS,
+                "items": {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2},
+            },
+        ),
         {
             "type": "object",
             "properties": {

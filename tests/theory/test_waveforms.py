@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
+from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, edges_of, signal_of
-from frictionlab.scene.waveforms import WAVE_SHAPES, Form, Term
+from frictionlab.scene.waveforms import WAVE_SHAPES, Form, Term, form_of, told
 from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudinal
 from frictionlab.theory.linear import LinearOscillator
 from frictionlab.theory.piecewise import piecewise
@@ -23,8 +24,18 @@ from frictionlab.theory.prescribed import mean_direction
 
 angles = st.floats(0.0, 360.0)
 terms = st.builds(Term, st.integers(1, 6), st.floats(-1.0, 1.0), angles)
-forms = st.sampled_from([Form(name) for name in WAVE_SHAPES]) | st.lists(terms, min_size=1, max_size=4).map(
-    lambda found: Form("harmonics", tuple(found))
+shares = st.floats(0.05, 0.95)
+place = st.tuples(st.integers(0, 20), st.integers(-10, 10).map(lambda tenths: tenths / 10))
+pairs = st.lists(place, min_size=2, max_size=6, unique_by=lambda one: one[0])
+points = pairs.map(lambda found: sorted([share / 20, value] for share, value in found))
+forms = (
+    st.sampled_from([Form(name) for name in WAVE_SHAPES])
+    | st.lists(terms, min_size=1, max_size=4).map(lambda found: Form("harmonics", tuple(found)))
+    | shares.map(lambda share: form_of({"square": {"duty": share}}))
+    | shares.map(lambda share: form_of({"sawtooth": {"width": share}}))
+    | points.filter(lambda found: len({y for _, y in found}) > 1).map(
+        lambda found: form_of({"points": found})
+    )
 )
 LAW = Coulomb(mu=0.4)
 
@@ -61,6 +72,43 @@ def test_no_piece_is_a_rounding_error_long(corners: list[float]) -> None:
 
 
 @given(form=forms)
+def test_a_form_reads_back_from_its_cell_and_its_study(form: Form) -> None:
+    assert told(str(form)) == form_of(form.plain()) == form
+
+
+@given(form=forms)
+def test_a_velocity_has_no_mean_and_a_force_that_of_its_samples(form: Form) -> None:
+    tau = (np.arange(20000) + 0.5) / 20000
+    kept, none = (signal_of(form, FULL_TURN, 20.0, mean)(tau) for mean in (True, False))
+
+    assert form.mean == pytest.approx(float(kept.mean()), abs=1e-3)
+    assert none == pytest.approx(kept - form.mean, abs=1e-14)
+
+
+def test_shares_of_one_half_and_one_are_the_waves_with_a_name() -> None:
+    tau = (np.arange(240) + 0.5) / 240
+    for given_as, name in (
+        ({"square": {"duty": 0.5}}, "square"),
+        ({"sawtooth": {"width": 0.5}}, "triangle"),
+        ({"sawtooth": {"width": 1.0}}, "sawtooth"),
+        ({"points": [[0, 0], [0.25, 1], [0.75, -1], [1, 0]]}, "triangle"),
+    ):
+        found = signal_of(form_of(given_as), FULL_TURN, 0.0)(tau)
+        assert found == pytest.approx(signal_of(Form(name), FULL_TURN, 0.0)(tau), abs=1e-12)
+
+
+@pytest.mark.parametrize(("speed", "mean"), [(0.2, -0.192), (-0.2, -0.192), (0.5, 0.2)])
+def test_the_mean_under_an_inertia_drive_of_two_levels_is_that_of_their_times(
+    speed: float, mean: float
+) -> None:
+    """Its velocity is 0.4 for 98 % of the period, and -19.6: -mu (2 duty - 1) on a belt that is slower."""
+    slip = {"velocity_amplitude": 10.0, "frequency": 1.0, "waveform": {"square": {"duty": 0.98}}}
+    scene = Scene.model_validate({"belt_speed": speed, "slip": slip})
+
+    assert steady_state(scene, Coulomb(mu=0.2)).mean_friction == pytest.approx(mean, abs=1e-12)
+
+
+@given(form=forms)
 def test_jumps_and_opposites_are_those_of_its_values(form: Form) -> None:
     signal, tau = signal_of(form, FULL_TURN, 0.0), (np.arange(240) + 1e-9) / 240
     sides = [np.abs(signal(tau) - signal(tau - 2e-9)).max(), np.abs(signal(tau) + signal(tau + 0.5)).max()]
@@ -68,7 +116,7 @@ def test_jumps_and_opposites_are_those_of_its_values(form: Form) -> None:
     assert form.jumps == (sides[0] > 1e-3)
     if form.antisymmetric:
         assert sides[1] <= 1e-6
-    elif not form.terms:
+    elif not form.terms and not form.numbers:
         assert sides[1] > 0.1
 
 

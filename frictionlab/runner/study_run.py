@@ -207,7 +207,8 @@ class StudyRun:
             return self.folder.read_text(file)
         if solving.rest:  # what is not solved has no onset
             return None
-        asked = self.study.keep_attractors, sorted(self.study.boundaries.items())
+        # the study, too: keys of pieces know neither labels nor the lengths of scenes in SI units
+        asked = self.study.keep_attractors, sorted(self.study.boundaries.items()), self.study.digest()
         return self.store.derived(solving.key(name, asked), make)
 
     def _columns(self, found: Results, wanted: Collection[str | None]) -> pd.DataFrame:

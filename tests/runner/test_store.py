@@ -254,3 +254,36 @@ def test_onsets_of_a_run_that_is_taken_over_are_its_own(tmp_path: Path) -> None:
         done = fl.run(study(laws=[{"kind": "coulomb", "mu": mu}], sweep=sweep), out=tmp_path / out)
         assert set(done.onsets["law.mu"]) == {mu}
     assert done.computed == 0
+
+
+def in_si(scale: float) -> dict[str, Any]:
+    """Scenes that are one without dimensions, at every scale."""
+    sizes: dict[str, Any] = {
+        "mass": f"{scale} kg",
+        "stiffness": f"{10 * scale} kN/m",
+        "normal_load": f"{10 * scale**2} N",
+    }
+    sizes |= {"belt_speed": "1 m/s", "drive": {"amplitude": f"{5 * scale**2} N", "frequency": "12 Hz"}}
+    speeds = [f"{scale * speed} m/s" for speed in (0.04, 0.06, 0.1)]
+    scene = {"dimensional": sizes | {"damping_ratio": 0.1}}
+    return study(scene=scene, sweep={"scene.dimensional.belt_speed": speeds})
+
+
+ALIKE = {
+    "labels": [study(laws=[{"kind": "coulomb", "mu": 0.4, "label": each}]) for each in "ab"],
+    "methods": [study(methods=[{"kind": "exact", "label": each}]) for each in "ab"],
+    "lengths": [in_si(1.0), in_si(2.0)],
+}
+
+
+@pytest.mark.parametrize("what", ALIKE)
+def test_onsets_of_pieces_that_are_found_have_the_labels_and_lengths_of_their_study(
+    what: str, tmp_path: Path
+) -> None:
+    for name, each in zip("ab", ALIKE[what], strict=True):
+        given = each if what == "lengths" else each | {"sweep": {"scene.belt_speed": [30, 40, 60]}}
+        found = fl.run(given, out=tmp_path / name).onsets
+
+        assert found is not None
+        assert len(found)
+        assert_frame_equal(found, fl.run(given).onsets, check_exact=True)

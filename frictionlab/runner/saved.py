@@ -89,7 +89,7 @@ def read_folder(
         shown = thinned(read_pieces(files.table), shown_rows(study))
     orbits_are_damaged = any(str(files.orbits_file) in told for told in damaged)
     readers: dict[str, Reader] = {
-        "table": lambda: read_whole(files.table) if table is None else table,
+        "table": lambda: read_whole(files.table) if table is None else table.copy(),
         "curves": lambda: _curves(files),
         "orbits": lambda: None if orbits_are_damaged else _orbits(files),
         **{name: partial(files.read_text, files.path / f"{name}.csv") for name in BESIDE_THE_TABLE},

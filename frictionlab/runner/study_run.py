@@ -171,8 +171,8 @@ class StudyRun:
         """Return the results that are held, or are in the files of a long table."""
         table, curves, folder = gathered.table, gathered.curves, self._long
         readers: dict[str, Reader] = {
-            "table": lambda: table,
-            "curves": lambda: curves,
+            "table": table.copy,  # onsets are made of it later, whatever somebody does with theirs
+            "curves": curves.copy,
             "orbits": lambda: gathered.orbits,
             "harmonics": lambda: gathered.harmonics,
             "attractors": lambda: gathered.states,

@@ -287,3 +287,16 @@ def test_onsets_of_pieces_that_are_found_have_the_labels_and_lengths_of_their_st
         assert found is not None
         assert len(found)
         assert_frame_equal(found, fl.run(given).onsets, check_exact=True)
+
+
+@pytest.mark.parametrize("before", [0, 1])
+def test_what_somebody_does_with_a_table_is_in_no_onsets(before: int, tmp_path: Path) -> None:
+    given = study(sweep={"scene.belt_speed": [30, 40, 60]})
+    for _ in range(before):
+        fl.run(given, out=tmp_path / "a")
+    done = fl.run(given, out=tmp_path / "a")
+    done.table["status"] = "failed"
+
+    for each in (done, fl.run(given, out=tmp_path / "b")):
+        assert each.onsets is not None
+        assert len(each.onsets) == 3

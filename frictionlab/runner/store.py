@@ -141,8 +141,8 @@ class Store:
         try:
             with path.open("rb") as file:
                 found = pq.ParquetFile(file, page_checksum_verification=True).read(use_threads=False)
-            if found.schema.metadata.get(_MARK) != _mark(found):
-                raise ValueError("its columns are not those that were written")
+            if found.schema.metadata.get(_MARK) != _mark(key, found):
+                raise ValueError("it is not what was written here")
         except FileNotFoundError:
             return None
         except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
@@ -174,7 +174,7 @@ class Store:
         try:
             self._make(path.parent)
             marked = answers.replace_schema_metadata(
-                {**(answers.schema.metadata or {}), _MARK: _mark(answers)}
+                {**(answers.schema.metadata or {}), _MARK: _mark(key, answers)}
             )
             with written_whole(path) as file:
                 pq.write_table(marked, file, **_PLAIN)
@@ -229,12 +229,12 @@ _PLAIN = {
 }
 """How a file is written: quickly, as most are read once."""
 _MARK = b"columns"
-"""Where a file holds a checksum of what parquet has none of: the names and the types of its columns."""
+"""Where a file holds a checksum of what parquet has none of: its key, the names and the types of its columns."""
 
 
-def _mark(answers: pa.Table) -> bytes:
+def _mark(key: str, answers: pa.Table) -> bytes:
     told = [(each.name, "list" if pa.types.is_list(each.type) else str(each.type)) for each in answers.schema]
-    return hashlib.sha256(repr((len(answers), told)).encode()).hexdigest().encode()
+    return hashlib.sha256(repr((key, len(answers), told)).encode()).hexdigest().encode()
 
 
 def store_of(

@@ -194,6 +194,13 @@ def test_a_damaged_file_is_noticed_or_does_no_harm(tmp_path: Path) -> None:
     assert store.get("cd" + "0" * 62) is None
 
 
+def test_a_file_in_the_place_of_another_is_not_taken_for_it(tmp_path: Path) -> None:
+    _, path = kept_one(tmp_path)
+    path.rename(path.with_stem("1" * 62))
+
+    assert Store(tmp_path).get("ab" + "1" * 62) is None
+
+
 def test_a_run_solves_what_was_damaged(tmp_path: Path) -> None:
     whole = fl.run(study(), out=tmp_path / "a").table
     damaged, *_ = (tmp_path / ".cache").rglob("*.parquet")

@@ -17,10 +17,10 @@ from importlib import metadata
 from importlib.metadata import EntryPoint
 from importlib.util import find_spec
 from pathlib import Path
-from types import MappingProxyType, ModuleType
+from types import FunctionType, MappingProxyType, ModuleType
 from typing import Any
 
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, as_written
 from frictionlab.laws.faults import LAW_FILE, BrokenPlugin, from_outside
 from frictionlab.methods.base import FOR_MEMORY, Method
 from frictionlab.study.entry_points import (
@@ -82,8 +82,31 @@ def law_name(name: str) -> str:
 
 @cache
 def code_of(law: type[FrictionLaw]) -> str:
-    """SHA-256 of the Python files of the package of a law; '' for a law of frictionlab."""
-    return code_around(law.__module__)
+    """SHA-256 of the Python files of the package of a law, and of what its class holds of the function around it.
+
+    '' for a law of frictionlab.
+    """
+    code, held = code_around(law.__module__), _held_by(law)
+    return _sha256(code + repr(held)) if code and held else code
+
+
+def _held_by(law: type[FrictionLaw]) -> list[Any]:
+    """What functions of a class made in a function hold of that: other classes have the same text."""
+    functions = ((name, as_written(one)) for name, one in vars(law).items())
+    cells = [
+        (name, cell.cell_contents)
+        for name, one in functions
+        if isinstance(one, FunctionType) and one.__module__ == law.__module__
+        for cell in one.__closure__ or ()
+    ]
+    return [(name, _told(held)) for name, held in cells if held is not law]
+
+
+def _told(held: Any) -> Any:
+    """A value, or the place and code of a function, whose text is known."""
+    function = getattr(held, "py_func", held)
+    code = getattr(function, "__code__", None)
+    return held if code is None else (function.__qualname__, code.co_firstlineno, code.co_code)
 
 
 def code_around(module: str) -> str:

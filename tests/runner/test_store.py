@@ -307,3 +307,21 @@ def test_what_somebody_does_with_a_table_is_in_no_onsets(before: int, tmp_path: 
     for each in (done, fl.run(given, out=tmp_path / "b")):
         assert each.onsets is not None
         assert len(each.onsets) == 3
+
+
+def share_of(share: float) -> FrictionLaw:
+    class Share(fl.SlidingLaw):
+        mu: float
+
+        def sliding_friction(self, slip_speed: float) -> float:
+            return share * self.mu
+
+    return Share(mu=0.4)
+
+
+def test_laws_of_classes_that_one_function_makes_are_told_apart(tmp_path: Path) -> None:
+    scene, sweep = fl.Scene.model_validate(SCENE), {"scene.belt_speed": [5, 25]}
+    for share in (1.0, 0.5, 1.0):
+        given = fl.Study.of(scene, share_of(share), sweep=sweep)
+        found = fl.run(given, out=tmp_path / str(share)).table
+        assert_frame_equal(found, fl.run(given).table, check_exact=True)

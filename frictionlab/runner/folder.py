@@ -210,9 +210,9 @@ class RunFolder(FolderFiles):
             and not self.damage()
         )
 
-    def remove_texts(self) -> None:
-        """Remove what was made from an earlier table. Raises SaveError."""
-        for path in self.texts:
+    def remove_beside(self) -> None:
+        """Remove what was made from an earlier table, or beside it. Raises SaveError."""
+        for path in (self.orbits_file, *self.texts):
             try:
                 path.unlink(missing_ok=True)
             except OSError as problem:

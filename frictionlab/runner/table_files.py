@@ -34,7 +34,7 @@ class TableFiles:
 
     def __enter__(self) -> Self:
         if self._folder is not None:
-            self._folder.remove_texts()
+            self._folder.remove_beside()
         return self
 
     def add_rows(self, table: pd.DataFrame) -> None:

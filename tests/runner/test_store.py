@@ -65,6 +65,14 @@ def test_kept_orbits_are_found_with_their_chunk(tmp_path: Path) -> None:
     assert_frame_equal(again.orbits, first.orbits, check_exact=True)
 
 
+def test_a_run_that_keeps_no_orbits_leaves_none_of_an_earlier_one(tmp_path: Path) -> None:
+    speeds = {"sweep": {"scene.belt_speed": [1.0, 5.0, 9.0]}}
+    for keep in ({"keep": {"orbit": 5}}, {}):
+        fl.run(study(**speeds, **keep), out=tmp_path / "a")
+
+    assert fl.load(tmp_path / "a").orbits is None
+
+
 def test_cases_that_compute_the_same_are_solved_once() -> None:
     laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.4, "label": "twin"}]
     done = fl.run(study(laws=laws))

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import contextlib
 import os
+import platform
 import re
+import threading
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -39,7 +41,14 @@ class NoScheduler(Exception):
     """There is no cluster to send pieces to; the message says why."""
 
 
-_TEMPORARY = re.compile(r"\.(?:.+\.(?:csv|html|json|parquet|py|yaml))\.(?P<process>\d+)")
+_TEMPORARY = re.compile(
+    rf"\.(?:.+\.(?:csv|html|json|parquet|py|yaml))\.{re.escape(platform.node())}\.\d+\.(?P<process>\d+)"
+)
+
+
+def begun(path: Path, process: int) -> Path:
+    """Return the place of a file while this thread of a process writes it."""
+    return path.with_name(f".{path.name}.{platform.node()}.{threading.get_ident()}.{process}")
 
 
 @contextlib.contextmanager
@@ -48,7 +57,7 @@ def written_whole(path: Path) -> Iterator[Any]:
 
     Raises SaveError.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = begun(path, os.getpid())
     try:
         with temporary.open("wb") as file:
             yield file

@@ -124,7 +124,7 @@ class Solving:
     def answers(self, block: Block | None = None) -> pa.Table:
         """Return the answers of a block, or of all, in the order of the rows; those that are missing are ``killed``.
 
-        A piece that somebody has removed from the store since is solved now.
+        A piece that is damaged, or that somebody has removed from the store since, is solved now.
         """
         pieces = block.pieces if block else [piece for each in self.blocks for piece in each.pieces]
         found = joined([self._answer(piece) for piece in pieces])
@@ -132,10 +132,14 @@ class Solving:
         return found.unify_dictionaries().combine_chunks().take(pa.array(order))
 
     def _answer(self, piece: Piece) -> pa.Table:
-        found = self.store.get(self._key_of(piece))
-        if found is None and not self.rest:
-            return solve_each(piece.chunks()).answers
-        return unanswered(len(piece), self.rest) if found is None else found
+        key = self._key_of(piece)
+        found = self.store.get(key)
+        if found is None and self.rest:
+            return unanswered(len(piece), self.rest)
+        if found is None:  # its file is damaged, or gone
+            found = solve_each(piece.chunks()).answers
+            self.store.put(key, found)
+        return found
 
 
 def unanswered(size: int, reason: str) -> pa.Table:

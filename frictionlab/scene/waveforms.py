@@ -183,10 +183,6 @@ class Form(NamedTuple):
 
 _SHARES = {"square": "duty", "sawtooth": "width"}
 """Shapes that have a share of the period, and its name: how long a square wave is 1, how long a sawtooth rises."""
-_MEANINGS = {
-    "square": "1 for a share of the period, else -1",
-    "sawtooth": "rises for a share of it, else falls",
-}
 
 
 def _lines_between(corners: list[tuple[Fraction, Fraction]]) -> tuple[WaveLine, ...]:
@@ -308,63 +304,16 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
 
 
-_TERM_SCHEMA = {
-    "type": "object",
-    "properties": {
-        "order": {
-            "description": "whole number that multiplies the frequency",
-            "type": "integer",
-            "minimum": 1,
-            "maximum": MOST_TERMS,
-        },
-        "amplitude": {"description": "of amplitude*sin(order*theta + phase)", "type": "number"},
-        "phase": {"description": "[degrees]: of this term", "type": "number", "default": 0},
-    },
-    "required": ["order", "amplitude"],
-    "additionalProperties": False,
-}
-_NUMBER = {"type": "number"}
-
-
-def _object(name: str, meaning: str, schema: dict[str, Any]) -> dict[str, Any]:
-    told = {name: {"description": meaning} | schema}
-    return {"type": "object", "properties": told, "required": [name], "additionalProperties": False}
-
-
+_KINDS = "harmonics", *_SHARES, "points"
 _FORM_SCHEMA = {
     "oneOf": [
         {"enum": list(WAVE_SHAPES)},
-        *(
-            _object(
-                shape,
-                _MEANINGS[shape],
-                _object(share, "share", _NUMBER | {"exclusiveMinimum": 0, "maximum": 1}),
-            )
-            for shape, share in _SHARES.items()
-        ),
-        _object(
-            "points",
-            "shares of the period and values there, straight between",
-            {
-                "type": "array",
-                "minItems": 2,
-                "maxItems": MOST_POINTS,
-                "items": {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2},
-            },
-        ),
         {
+            "description": f"{_SUM}; {{square: {{duty: 0.3}}}}, {{sawtooth: {{width: 0.3}}}}; {_POINTS}",
             "type": "object",
-            "properties": {
-                "harmonics": {
-                    "description": "the waveform as a sum of sines",
-                    "type": "array",
-                    "minItems": 1,
-                    "maxItems": MOST_TERMS,
-                    "items": _TERM_SCHEMA,
-                }
-            },
-            "required": ["harmonics"],
-            "additionalProperties": False,
+            "propertyNames": {"enum": list(_KINDS)},
+            "minProperties": 1,
+            "maxProperties": 1,
         },
     ]
 }

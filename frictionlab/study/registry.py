@@ -86,20 +86,12 @@ def code_of(law: type[FrictionLaw]) -> str:
 
     '' for a law of frictionlab.
     """
-    code, held = code_around(law.__module__), _held_by(law)
-    return _sha256(code + repr(held)) if code and held else code
-
-
-def _held_by(law: type[FrictionLaw]) -> list[Any]:
-    """What functions of a class made in a function hold of that: other classes have the same text."""
-    functions = ((name, as_written(one)) for name, one in vars(law).items())
-    cells = [
-        (name, cell.cell_contents)
-        for name, one in functions
-        if isinstance(one, FunctionType) and one.__module__ == law.__module__
-        for cell in one.__closure__ or ()
-    ]
-    return [(name, _told(held)) for name, held in cells if held is not law]
+    code = code_around(law.__module__)
+    functions = [one for one in map(as_written, vars(law).values()) if isinstance(one, FunctionType)]
+    own = [one for one in functions if one.__module__ == law.__module__]
+    held = [cell.cell_contents for one in own for cell in one.__closure__ or ()]
+    told = [_told(each) for each in held if each is not law]  # other classes have the same text
+    return _sha256(code + repr(told)) if code and told else code
 
 
 def _told(held: Any) -> Any:

@@ -65,6 +65,11 @@ def values_of_objects(
     ]
     tree |= {"sweep": _plain(sweep)} if sweep else {}
     classes = {kind: type(law) for kind, (_, law) in zip(kinds, labelled, strict=True)}
+    for kind, (label, law) in zip(kinds, labelled, strict=True):
+        if type(law) is not classes[kind]:
+            raise TypeError(
+                f"laws: {label or kind} and another law are two classes named {kind!r}; rename one"
+            )
     own = {kind: law for kind, law in classes.items() if kind not in registry.law_names()}
     source = read_mapping(tree | {key: value for key, value in told.items() if value is not None}, "study")
 

@@ -20,7 +20,7 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts import figures
-from frictionlab.runner.files import FolderError, remove_leftovers
+from frictionlab.runner.files import FolderError, begun, remove_leftovers
 from frictionlab.runner.folder import run_folder
 from frictionlab.runner.saved import load as read_saved
 from frictionlab.study.load import load_study
@@ -207,15 +207,16 @@ def test_leftovers_of_killed_runs_are_removed_and_those_of_running_ones_stay(tmp
     gone, mine = process.pid, os.getpid()
     for folder in ("out", "out/laws"):
         Path(folder).mkdir()
-        for name in (f".results.parquet.{gone}", f".report.html.{gone}", f".steady.py.{gone}", ".mine"):
-            (Path(folder) / name).write_text("")
-        (Path(folder) / f".results.csv.{os.getppid()}").write_text("")
+        for name in ("results.parquet", "report.html", "steady.py"):
+            begun(Path(folder) / name, gone).write_text("")
+        (Path(folder) / ".mine").write_text("")
+        begun(Path(folder) / "results.csv", os.getppid()).write_text("")
 
     fl.run("mine.yaml", out="out")
 
     left = {path.name for path in Path("out").rglob(".*")}
-    assert left == {".mine", f".results.csv.{os.getppid()}"}
-    (tmp_path / f".index.html.{mine}").write_text("")
+    assert left == {".mine", begun(Path("results.csv"), os.getppid()).name}
+    begun(tmp_path / "index.html", mine).write_text("")
     remove_leftovers(tmp_path)
     assert not list(tmp_path.glob(".index*"))
 

@@ -19,6 +19,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.runner import store as code_digest
 from frictionlab.runner.engine import solve_each
+from frictionlab.runner.files import begun
 from frictionlab.runner.packing import kept_of
 from frictionlab.runner.pieces import Cut, Piece, Task
 from frictionlab.runner.store import Keys, Store
@@ -236,7 +237,7 @@ def test_those_used_longest_ago_are_removed_above_the_limit(tmp_path: Path) -> N
 
 def test_what_a_killed_process_began_to_keep_is_removed(tmp_path: Path) -> None:
     store, path = kept_one(tmp_path)
-    (path.parent / f".{path.name}.999999999").write_bytes(b"half")
+    begun(path, 999999999).write_bytes(b"half")
     store.trim()
 
     assert list(path.parent.iterdir()) == [path]
@@ -333,3 +334,29 @@ def test_laws_of_classes_that_one_function_makes_are_told_apart(tmp_path: Path) 
         given = fl.Study.of(scene, share_of(share), sweep=sweep)
         found = fl.run(given, out=tmp_path / str(share)).table
         assert_frame_equal(found, fl.run(given).table, check_exact=True)
+
+
+def test_a_damaged_piece_is_solved_once(tmp_path: Path) -> None:
+    fl.run(study(), out=tmp_path / "a")
+    for path in (tmp_path / ".cache").rglob("*.parquet"):
+        content = bytearray(path.read_bytes())
+        content[40] ^= 1  # in a page, not in the account of columns
+        path.write_bytes(content)
+    fl.run(study(), out=tmp_path / "b")
+
+    assert all(Store(tmp_path / ".cache").get(path.parent.name + path.stem) is not None
+               for path in (tmp_path / ".cache").rglob("*.parquet"))  # fmt: skip
+
+
+def test_two_classes_of_one_name_are_told_apart() -> None:
+    def made() -> fl.SlidingLaw:
+        class Mine(fl.SlidingLaw):
+            mu: fl.Positive
+
+            def sliding_friction(self, speed: float) -> float:
+                return self.mu
+
+        return Mine(mu=0.4)
+
+    with pytest.raises(TypeError, match="are two classes named 'Mine'; rename one"):
+        fl.compare(fl.Scene.model_validate(SCENE), {"one": made(), "other": made()}, [5, 25])

@@ -515,12 +515,12 @@ class Scene(ScenePart):
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, float | str]:
-    """Return nested values by dotted path; a sum of harmonics as one text."""
+    """Return nested values by dotted path; a waveform as one text."""
     flat: dict[str, float | str] = {}
     for key, value in tree.items():
         if not isinstance(value, dict):
             flat[f"{prefix}{key}"] = value
-        elif "harmonics" in value:
+        elif key == "waveform":
             flat[f"{prefix}{key}"] = str(form_of(value))
         else:
             flat |= _flat(value, f"{prefix}{key}.")

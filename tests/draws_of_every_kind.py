@@ -19,8 +19,15 @@ MOST_NORMAL = 0.9
 """Of the normal load's mean, the most that it changes by."""
 
 
+NAMED = "sine", "square", "triangle", "sawtooth", "harmonics"
+OF_LINES = "duty", "width", "points"
+"""Waveforms, and those that came later: seeds of numpy's generator keep what they draw."""
+
+
 class Source(Protocol):
     """Where numbers come from."""
+
+    waves: Sequence[str]
 
     def uniform(self, low: float, high: float) -> float: ...
 
@@ -29,6 +36,8 @@ class Source(Protocol):
 
 class Numpy:
     """Numpy's generator."""
+
+    waves: Sequence[str] = NAMED
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
@@ -41,6 +50,8 @@ class Numpy:
 
 
 class _Hypothesis:
+    waves: Sequence[str] = (*NAMED, *OF_LINES)
+
     def __init__(self, draw: Any) -> None:
         self.draw = draw
 
@@ -58,7 +69,12 @@ def log(source: Source, low: float, high: float) -> float:
 
 def waveform(source: Source) -> Any:
     """Any; harmonics of up to three orders, the largest of amplitude 1."""
-    kind = source.among(("sine", "square", "triangle", "sawtooth", "harmonics"))
+    kind = source.among(source.waves)
+    if kind in ("duty", "width"):
+        return {"square" if kind == "duty" else "sawtooth": {kind: source.uniform(0.1, 0.9)}}
+    if kind == "points":
+        shares = sorted({source.among(range(21)) for _ in range(5)} | {3, 11})
+        return {"points": [[share / 20, source.uniform(0.1, 1.0)] for share in shares]}
     if kind != "harmonics":
         return kind
     orders = source.among(((1, 2), (1, 3), (2, 3), (1, 2, 5), (3,)))
@@ -82,7 +98,9 @@ def oscillation(source: Source, ratio: bool) -> Keys:
 def peak(keys: Keys) -> float:
     """At least the largest absolute value of a waveform."""
     shape = keys["waveform"]
-    return sum(term["amplitude"] for term in shape["harmonics"]) if isinstance(shape, dict) else 1.0
+    if isinstance(shape, dict) and "harmonics" in shape:
+        return sum(term["amplitude"] for term in shape["harmonics"])
+    return 2.0 if isinstance(shape, dict) else 1.0  # without its mean
 
 
 def body(source: Source, planar: bool, mu: float) -> Keys:

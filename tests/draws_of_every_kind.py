@@ -74,7 +74,7 @@ def waveform(source: Source) -> Any:
         return {"square" if kind == "duty" else "sawtooth": {kind: source.uniform(0.1, 0.9)}}
     if kind == "points":
         shares = sorted({source.among(range(21)) for _ in range(5)} | {3, 11})
-        return {"points": [[share / 20, source.uniform(0.1, 1.0)] for share in shares]}
+        return {"points": [[at / 20, (-1) ** k * source.uniform(0.1, 1.0)] for k, at in enumerate(shares)]}
     if kind != "harmonics":
         return kind
     orders = source.among(((1, 2), (1, 3), (2, 3), (1, 2, 5), (3,)))

@@ -66,7 +66,7 @@ EDITS = [
     ("drive: {unbalance: 10, frequency: 1}", "drive: 5", "8:10: scene.drive: must be a mapping (key: value), got 5"),
     ("drive: {unbalance: 10, frequency: 1}", "drive:", "8:3: scene.drive: must be a mapping, got null"),
     ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, waveform: sinus}",
-     "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth', {square: {duty: 0.3}}, {sawtooth: {width: 0.3}}, {points: [[0, 0], ...]} or {harmonics: [...]}, got the text 'sinus'"),
+     "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth', {square: {duty: 0.3}}, {sawtooth: {width: 0.3}}, {points: [[0, 0], ...]}, {file: measured.csv} or {harmonics: [...]}, got the text 'sinus'"),
     ("  drive: {unbalance: 10, frequency: 1}\n", "",
      "11:5: scene.transverse.load: needs drive for its frequency (amplitude 0 for a load across alone)"),
     ("load: {unbalance: 10}", "load: {unbalance: 10, frequency: 2}", "12:27: scene.transverse.load.frequency: unknown key"),
@@ -161,7 +161,7 @@ EDITS = [
     ("because: Fig. 9b}", "because: 9}", "23:84: expect[0].because: must be text, got 9 (put it in quotes)"),
     # waveforms, directions, belt vibration, varying normal load
     ("frequency: 1}", "frequency: 1, waveform: 3}",
-     "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth', {square: {duty: 0.3}}, {sawtooth: {width: 0.3}}, {points: [[0, 0], ...]} or {harmonics: [...]}, got 3"),
+     "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth', {square: {duty: 0.3}}, {sawtooth: {width: 0.3}}, {points: [[0, 0], ...]}, {file: measured.csv} or {harmonics: [...]}, got 3"),
     ("frequency: 1}", "frequency: 1, waveform: }", "8:40: scene.drive.waveform: must be a value, got null"),
     ("frequency: 1}", "frequency: 1, waveform: {harmonics: []}}",
      "8:51: scene.drive.waveform.harmonics: must be 1 to 64 terms, got 0; a sum of harmonics is {harmonics: [{order: 1, amp"),

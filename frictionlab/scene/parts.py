@@ -65,7 +65,7 @@ class _Force(ScenePart):
         Phase added to frequency*tau in the argument of the waveform [degrees].
     waveform : str or dict, optional
         Waveform: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
-        {points: [[share, value], ...]} or {harmonics: [{order, amplitude, phase}, ...]};
+        {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
 
     References
@@ -125,7 +125,7 @@ class Drive(_Force):
         Phase added to frequency*tau in the argument of the waveform [degrees].
     waveform : str or dict, optional
         Waveform: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
-        {points: [[share, value], ...]} or {harmonics: [{order, amplitude, phase}, ...]};
+        {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
     frequency : float, > 0
         Frequency of the drive [omega_1]; other vibrations have the same frequency or a multiple p/q of it.
@@ -164,7 +164,7 @@ class Load(_Force):
         [degrees].
     waveform : str or dict, optional
         Waveform: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
-        {points: [[share, value], ...]} or {harmonics: [{order, amplitude, phase}, ...]};
+        {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
     frequency_ratio : float or str, > 0, optional
         Frequency of the force as a multiple of the drive's, p/q [-]; 1 if left out.
@@ -440,8 +440,9 @@ class Slip(_Vibration):
     phase : float, default 0
         Phase added to frequency*tau in the argument of the waveform [degrees].
     waveform : str or dict, optional
-        Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
-        {points: [[share, value], ...]} or {harmonics: [{order, amplitude, phase}, ...]}; sine if left out.
+        Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth", {square: {duty}},
+        {sawtooth: {width}}, {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude,
+        phase}, ...]}; sine if left out.
     direction : float, optional
         Direction of the oscillation, from x1 towards x2 [degrees]; along x1 if left out.
 
@@ -472,8 +473,9 @@ class TransverseSlip(_Vibration):
         Frequency of the oscillation [omega_1]; given only without ``slip``. With ``slip`` both oscillate at
         the frequency of ``slip``.
     waveform : str or dict, optional
-        Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
-        {points: [[share, value], ...]} or {harmonics: [{order, amplitude, phase}, ...]}; sine if left out.
+        Waveform of the slip velocity: "sine", "square", "triangle", "sawtooth", {square: {duty}},
+        {sawtooth: {width}}, {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude,
+        phase}, ...]}; sine if left out.
 
     Examples
     --------

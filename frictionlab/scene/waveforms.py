@@ -6,11 +6,13 @@ of it there.
 
 from __future__ import annotations
 
+import csv
 import math
 import re
 from collections.abc import Mapping
 from fractions import Fraction
 from numbers import Real
+from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
@@ -226,11 +228,13 @@ def form_of(value: Any) -> Form:
             return Form(kind, (), (_share(kind, given),))
         if kind == "points":
             return _through_points(given)
+        if kind == "file":
+            return _through_points(_points_of_file(given))
     if isinstance(value, Mapping):
         return _sum_of_harmonics(value)
     raise ValueError(
         f"must be {', '.join(map(repr, WAVE_SHAPES))}, {{square: {{duty: 0.3}}}}, {{sawtooth: {{width: 0.3}}}}, "
-        f"{{points: [[0, 0], ...]}} or {{harmonics: [...]}}"
+        f"{{points: [[0, 0], ...]}}, {{file: measured.csv}} or {{harmonics: [...]}}"
     )
 
 
@@ -243,6 +247,22 @@ def _share(kind: str, given: Any) -> float:
     if not _is_number(share) or not (0.0 < share < 1.0 or (share == 1.0 and kind == "sawtooth")):
         raise ValueError(f"{kind}.{name}: must be > 0 and {most}, got {share!r}")
     return float(share)
+
+
+def _points_of_file(given: Any) -> list[list[float]]:
+    """Return shares of the period and values of a file of one period, whose last time ends it."""
+    try:
+        rows = list(csv.DictReader(Path(given).read_text(encoding="utf-8-sig").splitlines()))
+        times, values = ([float(row[name]) for row in rows] for name in ("time", "value"))
+    except (OSError, UnicodeError) as problem:
+        raise ValueError(f"file: {given} cannot be read: {getattr(problem, 'strerror', problem)}") from None
+    except (KeyError, TypeError, ValueError):
+        raise ValueError(
+            f"file: {given} must have the columns time and value, numbers in every row"
+        ) from None
+    if not times or times[0] != 0.0 or not math.isfinite(times[-1]) or times[-1] <= 0.0:
+        raise ValueError(f"file: {given} must begin at time 0, and end with the period")
+    return [[time / times[-1], value] for time, value in zip(times, values, strict=True)]
 
 
 _POINTS = (
@@ -304,7 +324,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
 
 
-_KINDS = "harmonics", *_SHARES, "points"
+_KINDS = "harmonics", *_SHARES, "points", "file"
 _FORM_SCHEMA = {
     "oneOf": [
         {"enum": list(WAVE_SHAPES)},

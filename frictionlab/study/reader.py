@@ -170,6 +170,8 @@ def read_values(
     if isinstance(source.tree, dict):
         apply_overrides(source, overrides)
         _place_receptance(source.tree, folder)
+        for part in ("scene", "sweep"):
+            _place_waveforms(source.tree.get(part), folder)
     notes = Notes(source.notes)
     data = folder if with_files else None
     told = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes), data).values()
@@ -193,6 +195,17 @@ def _place_file(at: Any, folder: FilePath) -> None:
         key = "receptance"
     if isinstance(at, dict) and isinstance(at.get(key), str):
         at[key] = str((folder / at[key]).resolve())
+
+
+def _place_waveforms(at: Any, folder: FilePath, named: bool = False) -> None:
+    """Say where files of waveforms are: a study names them from its own folder."""
+    if named and isinstance(at, dict) and isinstance(at.get("file"), str):
+        at["file"] = str(folder / at["file"])
+    if isinstance(at, list):
+        for each in at:
+            _place_waveforms(each, folder, named)
+    for key, value in at.items() if isinstance(at, dict) else ():
+        _place_waveforms(value, folder, str(key).endswith("waveform"))
 
 
 class _StudyReader:

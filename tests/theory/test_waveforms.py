@@ -17,6 +17,7 @@ from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, edges_of, signal_of
 from frictionlab.scene.waveforms import WAVE_SHAPES, Form, Term, form_of, told
+from frictionlab.study.load import load_study
 from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudinal
 from frictionlab.theory.linear import LinearOscillator
 from frictionlab.theory.piecewise import piecewise
@@ -95,6 +96,39 @@ def test_shares_of_one_half_and_one_are_the_waves_with_a_name() -> None:
     ):
         found = signal_of(form_of(given_as), FULL_TURN, 0.0)(tau)
         assert found == pytest.approx(signal_of(Form(name), FULL_TURN, 0.0)(tau), abs=1e-12)
+
+
+def test_a_file_of_a_study_is_read_from_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "measured.csv").write_text("time,value\n0,0\n0.5,1\n1.5,-1\n2,0\n")
+    slip = "{velocity_amplitude: 2, frequency: 1, waveform: {file: measured.csv}}"
+    (tmp_path / "study.yaml").write_text(
+        f"schema: 1\nscene: {{belt_speed: 1, slip: {slip}}}\nlaws: [{{kind: coulomb, mu: 0.4}}]\n"
+        "sweep: {scene.slip.waveform: [{file: measured.csv}, triangle]}\n"
+    )
+    plan = load_study(tmp_path / "study.yaml")
+
+    wanted = form_of({"points": [[0, 0], [0.25, 1], [0.75, -1], [1, 0]]})
+    assert plan.sweep["scene.slip.waveform"] == (wanted, Form("triangle"))
+    assert plan.scene.slip is not None
+    assert plan.scene.slip.waveform == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "told_of"),
+    [
+        ("time,force\n0,1\n", "must have the columns time and value"),
+        ("time,value\n0,1\n1,x\n", "numbers in every row"),
+        ("time,value\n1,1\n2,0\n", "must begin at time 0"),
+        ("time,value\n0,1\n3,0\n2,1\n", "must be from that before to 1"),
+        (None, "cannot be read"),
+    ],
+)
+def test_a_file_that_is_no_waveform_is_told(text: str | None, told_of: str, tmp_path: Path) -> None:
+    if text is not None:
+        (tmp_path / "wave.csv").write_text(text)
+
+    with pytest.raises(ValueError, match=told_of):
+        form_of({"file": str(tmp_path / "wave.csv")})
 
 
 @pytest.mark.parametrize(("speed", "mean"), [(0.2, -0.192), (-0.2, -0.192), (0.5, 0.2)])

@@ -6,7 +6,7 @@ from profiles import deep
 from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
-    "analysis": 2538,
+    "analysis": 2547,
     "bench": 2979,
     "beside the rooms": 93,
     "charts": 1804,
@@ -23,7 +23,7 @@ LIMITS = {
     "testing": 1491,
     "theory": 831,
     "tools": 19,
-    "values": 1383,
+    "values": 1392,
     "tests": 26879,
     "plugins": 3228,
 }

@@ -268,6 +268,16 @@ def _advice(text: str) -> str:
     return ""
 
 
+OTHER_WORDS = {
+    "period": ("frequency", "frequency is 2 pi over the period; with a unit, such as Hz, one over it"),
+    "contact_viscosity": (
+        "viscosity",
+        "viscosity is per unit of normal load: divide by the load, which gives s/m",
+    ),
+}
+"""Words that people write for a number that is given another way: the key of that, and how."""
+
+
 class Notes:
     """Mistakes by path; of several at the same path only the first is kept."""
 
@@ -314,7 +324,9 @@ class Notes:
             names = [*told, *longer]
             left = [name for name in names if name not in (*given,)]
             missing = [name for name in required if name in left]
-            hint = did_you_mean(str(path[-1]), left, missing) or did_you_mean(str(path[-1]), names)
+            key, instead = OTHER_WORDS.get(str(path[-1]), ("", ""))
+            hint = instead if key in names else did_you_mean(str(path[-1]), left, missing)
+            hint = hint or did_you_mean(str(path[-1]), names)
             if not hint and str(path[-1]).isdecimal():  # 0,4 in braces is 0, and a key 4
                 hint = f"numbers are written with a point, such as 0.{path[-1]}"
             what = f"unknown key; allowed: {', '.join(told) or 'none'}"

@@ -184,6 +184,7 @@ GOOD = {"belt_speed": [1.0, 2.0, 3.0], "mean_friction": [0.1, 0.2, 0.3]}
     ("data", "said"),
     [
         ({"belt_speed": [1.0]}, "the column 'mean_friction' is missing, there are belt_speed"),
+        ({"1": [2.0], "0.2": [0.3]}, "its first line has numbers; .* such as belt_speed,mean_friction"),
         (
             {"belt_speeds": [1.0], "mean_friction": [1.0]},
             "'belt_speed' is missing.*did you mean 'belt_speeds'",

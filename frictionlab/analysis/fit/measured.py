@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -121,6 +123,12 @@ def _as_table(data: Any, where: str) -> pd.DataFrame:
     raise WrongData(f"{where}: must be a table (a pandas DataFrame or a mapping of columns), got {data!r}")
 
 
+def _is_a_number(text: Any) -> bool:
+    with suppress(ValueError):
+        return math.isfinite(float(str(text)))
+    return False
+
+
 def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
     is_path = "time" in table or "slip" in table
     speed = "belt_speed_m_per_s" if in_si else "belt_speed"
@@ -128,6 +136,11 @@ def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
     wanted = OF_A_PATH if is_path else (speed, "mean_friction")
     for name in wanted:
         if name not in table:
+            if all(_is_a_number(each) for each in table.columns):
+                told = (
+                    f"{where}: its first line has numbers; write the names of the columns above them, such as"
+                )
+                raise WrongData(f"{told} {','.join(wanted)}")
             hint = closest(name, list(table.columns))
             did = f"; did you mean '{hint}'?" if hint else ""
             raise WrongData(

@@ -197,15 +197,14 @@ def _place_file(at: Any, folder: FilePath) -> None:
         at[key] = str((folder / at[key]).resolve())
 
 
-def _place_waveforms(at: Any, folder: FilePath, named: bool = False) -> None:
-    """Say where files of waveforms are: a study names them from its own folder."""
-    if named and isinstance(at, dict) and isinstance(at.get("file"), str):
+def _place_waveforms(at: Any, folder: FilePath, named: bool = False, depth: int = 8) -> None:
+    """Say where files of waveforms are, not deeper than they can lie: a study names them from its own folder."""
+    if not isinstance(at, dict | list) or not depth:
+        return
+    if isinstance(at, dict) and named and isinstance(at.get("file"), str):
         at["file"] = str(folder / at["file"])
-    if isinstance(at, list):
-        for each in at:
-            _place_waveforms(each, folder, named)
-    for key, value in at.items() if isinstance(at, dict) else ():
-        _place_waveforms(value, folder, str(key).endswith("waveform"))
+    for key, value in at.items() if isinstance(at, dict) else ((named * "waveform", each) for each in at):
+        _place_waveforms(value, folder, str(key).endswith("waveform"), depth - 1)
 
 
 class _StudyReader:

@@ -12,7 +12,7 @@ LIMITS = {
     "charts": 1804,
     "cli": 973,
     "compile": 1409,
-    "curves": 841,
+    "curves": 842,
     "laws": 686,
     "methods": 8017,
     "motion": 4599,

@@ -212,7 +212,8 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
     if loads.shakedown is not None:
         return _bristle_start(rows, loads.shakedown, loads.prescribed)
     if loads.start == loads.start:
-        return Estimate(loads.start, _ROUNDING * abs(loads.start))
+        steady = np.abs(rows.steady[np.isfinite(rows.steady)])
+        return Estimate(loads.start, _ROUNDING * max([abs(loads.start), *steady.tolist()]))
     if loads.prescribed:
         return Estimate(0.0, 0.0)
     if loads.along == 0 == loads.across:

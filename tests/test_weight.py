@@ -16,7 +16,7 @@ LIMITS = {
     "laws": 686,
     "methods": 8017,
     "motion": 4599,
-    "report": 1794,
+    "report": 1799,
     "runner": 3769,
     "scene": 1781,
     "study": 2820,

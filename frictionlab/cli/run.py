@@ -223,7 +223,7 @@ def _shown(job: Job, result: Results, asked: RunOptions, meter: Meter) -> Result
                 print_message(f"{what} in {there}")
         return result
     meter.begins("drawing", "figures")
-    drawn = _draw(result, asked.figures, meter)
+    drawn = _draw(result, asked.figures, meter) if result.study.sweep else None
     meter.begins("writing the report")
     _report(result, drawn)
     pages.know_pages(result, asked.figures)
@@ -288,7 +288,7 @@ def _draw(done: Results, every: bool, meter: Meter) -> FigureData:
     return data
 
 
-def _report(done: Results, drawn: FigureData) -> None:
+def _report(done: Results, drawn: FigureData | None) -> None:
     from frictionlab.report.page import write_report
 
     print_message(f"report in {write_report(done, drawn)}")

@@ -212,8 +212,8 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
     if loads.shakedown is not None:
         return _bristle_start(rows, loads.shakedown, loads.prescribed)
     if loads.start == loads.start:
-        steady = np.abs(rows.steady[np.isfinite(rows.steady)])
-        return Estimate(loads.start, _ROUNDING * max([abs(loads.start), *steady.tolist()]))
+        steady = float(np.nanmax(np.abs(rows.steady), initial=0.0))
+        return Estimate(loads.start, _ROUNDING * max(abs(loads.start), steady))
     if loads.prescribed:
         return Estimate(0.0, 0.0)
     if loads.along == 0 == loads.across:

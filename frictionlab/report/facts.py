@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pandas as pd
 from markupsafe import Markup
 
-from frictionlab.charts.figures import FigureData
 from frictionlab.report.sources import Cited, sources
 from frictionlab.report.tables import Cell, settings
 from frictionlab.runner.pairs import Difference, method_pairs
@@ -18,6 +17,9 @@ from frictionlab.runner.results import Results
 from frictionlab.runner.table import swept_inputs
 from frictionlab.values.columns import BELT_SPEED, belt_speed
 from frictionlab.values.units import as_shown
+
+if TYPE_CHECKING:
+    from frictionlab.charts.figures import FigureData
 
 
 class CurveRows(NamedTuple):
@@ -85,6 +87,8 @@ class Facts:
     @cached_property
     def figures(self) -> FigureData:
         """What its figures of the table are drawn of."""
+        from frictionlab.charts.figures import FigureData  # with matplotlib, which takes a second
+
         return self.drawn or FigureData.of(self.saved.study, self.saved.shown)
 
     @cached_property

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import pandas as pd
@@ -17,12 +17,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from frictionlab import __version__
-from frictionlab.charts.figures import FigureData
 from frictionlab.report import findings, question
 from frictionlab.report.answer import sentences
 from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.report.facts import Facts
-from frictionlab.report.figures import address, pictures
 from frictionlab.report.shapes import shape_grid
 from frictionlab.report.sources import entries_of, published
 from frictionlab.report.tables import Grid, grid, size
@@ -31,6 +29,11 @@ from frictionlab.runner.results import Results, folder_of
 from frictionlab.runner.words import counted
 from frictionlab.study.written import yaml_text
 from frictionlab.values.printable import with_error
+
+if TYPE_CHECKING:
+    from frictionlab.charts.figures import FigureData
+    from frictionlab.report.figures import Picture
+
 
 REPORT_TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"
@@ -101,7 +104,12 @@ def _style() -> Markup:
 
 
 def _head(run: Facts) -> dict[str, Any]:
-    shown, rows = pictures(run), len(run.table)
+    rows = len(run.table)
+    shown: list[Picture] = []
+    if run.saved.study.sweep:
+        from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
+
+        shown = pictures(run)
     return {
         "heading": Markup("V<sub>lin</sub>").join(map(escape, run.saved.title.split("V_lin"))),
         "sentences": sentences(run),
@@ -217,6 +225,8 @@ def index(folder: Path, runs: Sequence[Results]) -> str:
 
 def _entry(folder: Path, run: Results) -> dict[str, Any]:
     """A study's row."""
+    from frictionlab.report.figures import address
+
     own = folder_of(run)
     name, passed = own.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
     picture = address(own / "figures" / "mean_friction")
@@ -244,6 +254,8 @@ def write_fit_page(found: Any, path: Any, title: str = "") -> Path:
 
     Raises SaveError.
     """
+    from frictionlab.report.figures import address
+
     file = Path(path)
     write_page(
         file, fit_page(found, title or "A fit to measurements", address(file.parent / "figures" / "fit"))

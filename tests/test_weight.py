@@ -17,7 +17,7 @@ LIMITS = {
     "methods": 8017,
     "motion": 4599,
     "report": 1799,
-    "runner": 3769,
+    "runner": 3773,
     "scene": 1781,
     "study": 2820,
     "testing": 1491,

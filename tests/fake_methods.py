@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from fig_4b import over_speeds
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
@@ -19,6 +20,8 @@ from frictionlab.scene.scene import Scene
 from frictionlab.study import registry
 from frictionlab.study.registry import BrokenPlugin
 from frictionlab.values.quantities import NonNegative
+
+Trouble = Callable[[dict[float, Callable[[], object]]], None]
 
 
 def breaks_down() -> None:
@@ -90,10 +93,7 @@ def register(monkeypatch: pytest.MonkeyPatch, **fakes: type[Method]) -> None:
 
 def faked(belt_speeds: Any, **changes: Any) -> dict[str, Any]:
     """A study of the body of Fig. 4b by the fake, but for the changes."""
-    drive = {"unbalance": 10, "frequency": 1}
-    scene = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": drive}
-    asked = {"methods": ["fake"], "sweep": {"scene.belt_speed": belt_speeds}}
-    return {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], **asked, **changes}
+    return over_speeds(belt_speeds, **{"methods": ["fake"], **changes})
 
 
 def _orbit(belt_speed: float) -> Orbit | None:

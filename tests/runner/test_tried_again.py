@@ -2,58 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
-from fake_methods import Fake, breaks_down, faked, is_wrong, register
+from fake_methods import Trouble, breaks_down, faked, is_wrong
 from profiles import deep
 
 import frictionlab as fl
 from frictionlab.runner import store as code_digest
 from frictionlab.study import registry
 
-pytestmark = deep("seconds of runs")
-
-Trouble = Callable[[dict[float, Callable[[], None]]], None]
+pytestmark = [deep("seconds of runs"), pytest.mark.usefixtures("fakes")]
 STUDY = faked([4, 9])
 
 
-@pytest.fixture(autouse=True)
-def _fake_method(monkeypatch: pytest.MonkeyPatch) -> None:
-    register(monkeypatch, fake=Fake)
-
-
-@pytest.fixture
-def trouble(monkeypatch: pytest.MonkeyPatch) -> Trouble:
-    return lambda troubles: monkeypatch.setattr(Fake, "troubles", troubles)
-
-
-def mended(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From here on all code is another."""
-    monkeypatch.setattr(code_digest, "own_code", lambda: "mended")
-
-
-def test_a_point_that_failed_is_taken_over_while_all_code_is_the_same(
-    trouble: Trouble, tmp_path: Path
+def test_what_failed_is_tried_again_by_other_code_alone(
+    trouble: Trouble, tmp_path: Path, monkeypatch: Any
 ) -> None:
     trouble({4.0: breaks_down})
     fl.run(STUDY, out=tmp_path / "run")
-
     again = fl.run(STUDY, out=tmp_path / "run")
 
     assert again.computed == 0
     assert again.table["reason"].tolist()[0] == "ZeroDivisionError: float division by zero"
-
-
-def test_a_point_that_failed_is_tried_again_by_other_code(
-    trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    trouble({4.0: breaks_down})
-    fl.run(STUDY, out=tmp_path / "run")
-    mended(monkeypatch)
+    monkeypatch.setattr(code_digest, "own_code", lambda: "mended")
     trouble({})
-
     again = fl.run(STUDY, out=tmp_path / "run")
 
     assert (again.computed, again.table["status"].tolist()) == (2, ["ok", "ok"])
@@ -66,17 +40,13 @@ def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
     trouble({4.0: is_wrong})
     first = fl.run(STUDY, out=tmp_path / "run")
     trouble({})
-
     again = fl.run(STUDY, out=tmp_path / "run")
 
     assert first.table["reason"].str.startswith("internal error: ").all()
-    assert again.computed == 2
-    assert again.table["status"].tolist() == ["ok", "ok"]
+    assert (again.computed, again.table["status"].tolist()) == (2, ["ok", "ok"])
 
 
-def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(monkeypatch: Any) -> None:
     study = fl.run(STUDY).study
     before = code_digest.code_digest(study)
     assert code_digest.code_digest(study) == before

@@ -13,10 +13,11 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from fake_methods import Fake, breaks_down, register
+from fake_methods import Fake, breaks_down, faked, register
+from fig_4b import GIVEN
 from pages import Page, complaints
 from profiles import deep, some
-from run_folders import without_stamps
+from run_folders import interrupted_after_one_piece, without_stamps
 
 import frictionlab as fl
 from frictionlab.cli.scaffold import new_study
@@ -26,13 +27,11 @@ from frictionlab.report.figures import pictures
 from frictionlab.report.page import report, wall, write_index, write_report
 from frictionlab.report.sources import bibtex, sources
 from frictionlab.report.tables import html, symbol_html
-from frictionlab.runner import engine, study_run
 from frictionlab.runner.files import FolderError
 from frictionlab.study.bibliography import read_bibtex
 from frictionlab.values.columns import _IN_SI, _NAMES
 
-SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
-PLAIN = {"schema": 1, "scene": SCENE, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["fake"]}
+PLAIN = faked([4.0, 13.0, -2.0, 9.0, 3.0, 5.0])
 SLIP = {"velocity_amplitude": 1, "frequency": 1}
 HOSTILE = "<script>alert(1)</script></title></style> & \"quotes\" 'and' {{ 7 * 7 }} $\\mu$"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg"/>'
@@ -51,8 +50,7 @@ def ran(tmp_path: Path) -> Runner:
     """Runs a study, with pictures of nothing in place of figures."""
 
     def run(name: str = "run", **changes: Any) -> fl.Run:
-        sweep = {"sweep": {"scene.belt_speed": [4.0, 13.0, -2.0, 9.0, 3.0, 5.0]}}
-        done = fl.run(PLAIN | sweep | changes, out=tmp_path / name)
+        done = fl.run(PLAIN | changes, out=tmp_path / name)
         (tmp_path / name / "figures").mkdir()
         for figure in ("mean_friction", "velocity", "energies"):
             (tmp_path / name / "figures" / f"{figure}.svg").write_text(SVG)
@@ -68,22 +66,6 @@ def page_of(saved: fl.Run) -> Page:
 def at_speeds(*speeds: float) -> dict[str, Any]:
     """The sweep of a study."""
     return {"sweep": {"scene.belt_speed": list(speeds)}}
-
-
-def stop(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> fl.Run:
-    """A run that is interrupted once one of its two chunks is done."""
-
-    def collect_one(sent: Any, left: Any, *others: Any) -> None:
-        collect(sent, list(left)[:1], *others)
-        raise KeyboardInterrupt
-
-    collect = engine.Sent.collect
-    monkeypatch.setattr(engine.Sent, "collect", collect_one)
-    study = PLAIN | {"sweep": {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0]}}
-    study |= {"expect": [{"column": "mean_friction", "below": 1}]}
-    with pytest.raises(study_run.Interrupted):
-        fl.run(study, out=tmp_path / "stopped")
-    return fl.load(tmp_path / "stopped")
 
 
 ODD_STUDIES: dict[str, dict[str, Any]] = {
@@ -178,9 +160,9 @@ ACROSS = {"natural_frequency": 1, "damping_ratio": 1, "load": {"unbalance": 1}}
 @pytest.mark.parametrize(
     ("scene", "words"),
     [
-        (SCENE, "one degree of freedom, on a moving belt, shaken along it."),
+        (GIVEN, "one degree of freedom, on a moving belt, shaken along it."),
         ({"belt_speed": 1, "slip": SLIP}, "Prescribed slip: a body whose slip"),
-        (SCENE | {"transverse": ACROSS}, "in the plane, on a moving belt, shaken along and across it."),
+        (GIVEN | {"transverse": ACROSS}, "in the plane, on a moving belt, shaken along and across it."),
         (
             {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1},
             "on a moving belt, which nothing shakes.",
@@ -283,8 +265,11 @@ def test_a_run_without_trouble_says_so_at_the_top_and_nowhere_else(ran: Runner) 
     assert {"odd", "expected"}.isdisjoint(each.attributes.get("id") for each in page.elements)
 
 
-def test_an_interrupted_run_is_told_to_be_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    text = report(stop(monkeypatch, tmp_path))
+def test_an_interrupted_run_is_told_to_be_one(tmp_path: Path) -> None:
+    study = PLAIN | {"sweep": {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0]}}
+    study |= {"expect": [{"column": "mean_friction", "below": 1}]}
+    interrupted_after_one_piece(study, tmp_path / "stopped")
+    text = report(fl.load(tmp_path / "stopped"))
     page = Page(text)
     words = " ".join(page.all("body")[0].text.split())
 

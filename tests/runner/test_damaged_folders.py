@@ -5,15 +5,18 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
-from fake_methods import Fake, register
+from fake_methods import faked
+from fig_4b import STEADY
 from pandas.testing import assert_frame_equal
 from profiles import deep
 
@@ -29,37 +32,15 @@ from frictionlab.values.printable import printable
 
 pytestmark = deep("seconds of runs")
 
-LAW = '''"""A law."""
-import frictionlab as fl
-
-
-class Steady(fl.SlidingLaw):
-    """Of a constant coefficient."""
-
-    mu: fl.Positive
-
-    def sliding_friction(self, speed: float) -> float:
-        """The coefficient."""
-        return self.mu
-'''
-STUDY = {
-    "schema": 1,
-    "scene": {"damping_ratio": 0.1, "normal_load": 10, "drive": {"unbalance": 10, "frequency": 1}},
-    "plugins": ["steady.py"],
-    "laws": [{"kind": "steady", "mu": 0.4}],
-    "methods": ["fake"],
-    "sweep": {"scene.belt_speed": [2.0, 4.0, 9.0, 12.0]},
-    "keep": {"orbit": 4},
-    "expect": [{"column": "mean_friction", "below": 1}],
-}
+STUDY = faked([2.0, 4.0, 9.0, 12.0], plugins=["steady.py"], laws=[{"kind": "steady", "mu": 0.4}])
+STUDY |= {"keep": {"orbit": 4}, "expect": [{"column": "mean_friction", "below": 1}]}
 FILES = ("results.parquet", "results.csv", "curves.csv", "orbits.parquet", "study.yaml", "laws/steady.py")
 
 
 @pytest.fixture(autouse=True)
-def _solved_by_a_fake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    register(monkeypatch, fake=Fake)
+def _solved_by_a_fake(fakes: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "steady.py").write_text(LAW)
+    (tmp_path / "steady.py").write_text(STEADY)
     (tmp_path / "mine.yaml").write_text(yaml_text(STUDY))
 
 
@@ -77,17 +58,12 @@ def flipped(path: Path) -> None:
     path.write_bytes(whole)
 
 
-def removed(path: Path) -> None:
-    path.unlink()
+Deed = Callable[[Path], None]
+DEEDS = [("results.parquet", flipped), *((name, deed) for name in FILES for deed in (half, Path.unlink))]
 
 
-@pytest.mark.parametrize(
-    ("name", "deed"),
-    [("results.parquet", flipped), *((name, deed) for name in FILES for deed in (half, removed))],
-)
-def test_a_damaged_file_is_named_with_the_command_that_mends_it(
-    name: str, deed: Callable[[Path], None]
-) -> None:
+@pytest.mark.parametrize(("name", "deed"), DEEDS)
+def test_a_damaged_file_is_named_with_the_command_that_mends_it(name: str, deed: Deed) -> None:
     out, study = Path("out"), load_study("mine.yaml")
     whole = fl.run(study, out=out)
     before = contents(out)
@@ -101,8 +77,7 @@ def test_a_damaged_file_is_named_with_the_command_that_mends_it(
     said = run_folder(study, out).damaged()
     if name != "study.yaml":  # it may be edited, and is written by every run
         (line,) = said
-        assert line.startswith(f"out/{name} is ")
-        assert line.endswith("; it is made again")
+        assert re.fullmatch(f"out/{name} is .*; it is made again", line)
     again = fl.run(command[1], out=out)
     assert contents(out) == before
     assert_frame_equal(again.table, whole.table)
@@ -117,29 +92,27 @@ def reported(folder: Path) -> str:
         return str(problem)
 
 
-def test_the_commands_say_what_is_damaged(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+REPORT, RUN = ["report", "out"], ["run", "mine.yaml", "-o", "out"]
+
+
+def test_the_commands_say_what_is_damaged(capsys: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(figures, "draw_figures", lambda *_: [Path("out")])
     fl.run("mine.yaml", out="out")
     half(Path("out/results.csv"))
 
-    assert cli.main(["report", "out"]) == 0
-    assert "out/results.csv is damaged: it has " in capsys.readouterr().err
-    assert cli.main(["run", "mine.yaml", "-o", "out"]) == 0
-    assert "results.csv is damaged" in capsys.readouterr().err
+    for asked, said in ((REPORT, "out/results.csv is damaged: it has "), (RUN, "results.csv is damaged")):
+        assert cli.main(asked) == 0
+        assert said in capsys.readouterr().err
     assert cli.main(["plot", "out"]) == 0
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize("deed", [half, removed])
-def test_a_folder_without_its_account_is_replaced_by_the_command_that_is_named(
-    deed: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize("deed", [half, Path.unlink])
+def test_a_folder_without_its_account_is_replaced_by_the_command_named(deed: Deed, capsys: Any) -> None:
     fl.run("mine.yaml", out="out")
     deed(Path("out/provenance.json"))
 
-    for asked in (["report", "out"], ["run", "mine.yaml", "-o", "out"]):
+    for asked in (REPORT, RUN):
         assert cli.main(asked) == 2
         assert "frictionlab run STUDY -o out --force" in capsys.readouterr().err
     fl.run("mine.yaml", out="out", existing="replace")
@@ -147,7 +120,7 @@ def test_a_folder_without_its_account_is_replaced_by_the_command_that_is_named(
 
 
 @pytest.mark.parametrize("name", ["results.parquet", "study.yaml", "provenance.json"])
-def test_any_flipped_bit_is_noticed_or_does_no_harm(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_any_flipped_bit_is_noticed_or_does_no_harm(name: str) -> None:
     fl.run("mine.yaml", out="out")
     place = Path("out") / name
     whole = place.read_bytes()
@@ -191,11 +164,8 @@ def test_a_file_that_is_being_replaced_is_known_before_and_after(monkeypatch: py
 def test_a_table_is_not_left_beside_the_text_of_an_earlier_one() -> None:
     fl.run("mine.yaml", out="out")
     part = fl.run("mine.yaml", out="out", columns=["reversals"], existing="reuse")
-    assert (
-        list(pd.read_csv("out/results.csv"))
-        == list(part.table)
-        == list(pd.read_parquet("out/results.parquet"))
-    )
+    for written in (pd.read_csv("out/results.csv"), pd.read_parquet("out/results.parquet")):
+        assert list(written) == list(part.table)
     fl.run("mine.yaml", out="few", columns=["floquet"])
     whole = fl.run("mine.yaml", out="few")
     assert list(pd.read_csv("few/results.csv")) == list(whole.table)
@@ -204,19 +174,17 @@ def test_a_table_is_not_left_beside_the_text_of_an_earlier_one() -> None:
 def test_leftovers_of_killed_runs_are_removed_and_those_of_running_ones_stay(tmp_path: Path) -> None:
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait()
-    gone, mine = process.pid, os.getpid()
-    for folder in ("out", "out/laws"):
-        Path(folder).mkdir()
-        for name in ("results.parquet", "report.html", "steady.py"):
-            begun(Path(folder) / name, gone).write_text("")
-        (Path(folder) / ".mine").write_text("")
-        begun(Path(folder) / "results.csv", os.getppid()).write_text("")
+    for folder in (Path("out"), Path("out/laws")):
+        folder.mkdir()
+        stays = {folder / ".mine", begun(folder / "results.csv", os.getppid())}
+        goes = {begun(folder / name, process.pid) for name in ("results.parquet", "report.html", "steady.py")}
+        for path in stays | goes:
+            path.write_text("")
 
     fl.run("mine.yaml", out="out")
 
-    left = {path.name for path in Path("out").rglob(".*")}
-    assert left == {".mine", begun(Path("results.csv"), os.getppid()).name}
-    begun(tmp_path / "index.html", mine).write_text("")
+    assert {path.name for path in Path("out").rglob(".*")} == {path.name for path in stays}
+    begun(tmp_path / "index.html", os.getpid()).write_text("")
     remove_leftovers(tmp_path)
     assert not list(tmp_path.glob(".index*"))
 
@@ -225,7 +193,7 @@ def test_the_account_holds_a_checksum_of_the_table_and_the_length_of_every_file_
     fl.run("mine.yaml", out="out")
     account = json.loads(Path("out/provenance.json").read_text())
 
-    assert account["files"] == {
-        name: (Path("out") / name).stat().st_size for name in FILES if name != "study.yaml"
-    }
+    lengths = {name: len(content) for name, content in contents(Path("out")).items()}
+    assert account["files"] | {"study.yaml": lengths["study.yaml"]} == lengths
+    assert "study.yaml" not in account["files"]
     assert account["table"] == hashlib.sha256(Path("out/results.parquet").read_bytes()).hexdigest()

@@ -5,43 +5,39 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from collections import Counter
+from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from fig_4b import COULOMB, GIVEN, over_speeds
 from pandas.testing import assert_frame_equal
 from profiles import deep
+from run_folders import interrupted_after_one_piece
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.runner import engine, pieces, saved, study_run
 from frictionlab.runner import gathering as thinned
+from frictionlab.runner import pieces, saved, study_run
 from frictionlab.runner.saved import load as read_saved
 from frictionlab.study.load import parse_study
 from frictionlab.study.written import yaml_text
 
 pytestmark = deep("seconds of runs")
 
-SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
-SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}
-ACROSS = {"natural_frequency": 0.5, "damping_ratio": 0.1}
 SPEEDS = {"start": 0.5, "stop": 60, "num": 40}
 
 
 def study(**changes: Any) -> dict[str, Any]:
-    laws = [
-        {"kind": "coulomb", "mu": 0.4},
-        {"kind": "coulomb", "mu": 0.3, "mu_static": 0.5, "label": "static"},
-    ]
+    laws = [COULOMB, {"kind": "coulomb", "mu": 0.3, "mu_static": 0.5, "label": "static"}]
     sweep = {"scene.damping_ratio": [0.1, 0.2], "scene.belt_speed": SPEEDS, "scene.drive.frequency": [1, 1.5]}
-    given = {"schema": 1, "scene": SCENE, "laws": laws, "methods": ["exact"], "sweep": sweep}
-    return (
-        given
-        | {"keep": {"orbit": 3}, "expect": [{"where": {"law": "coulomb"}, "column": "error", "below": 1e-8}]}
-        | changes
-    )
+    small = {"where": {"law": "coulomb"}, "column": "error", "below": 1e-8}
+    given = {"laws": laws, "sweep": sweep, "keep": {"orbit": 3}, "expect": [small]}
+    return over_speeds(SPEEDS, **given | changes)
 
 
 @pytest.fixture
@@ -52,64 +48,46 @@ def short_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces, "ROWS_OF_A_BLOCK", 50)
 
 
-ORDERS = [
-    ["scene.damping_ratio", "scene.belt_speed", "scene.drive.frequency"],
-    ["scene.belt_speed", "scene.drive.frequency", "scene.damping_ratio"],
-    ["scene.drive.frequency", "scene.damping_ratio", "scene.belt_speed"],
-]
-
-
-@pytest.mark.parametrize("order", ORDERS)
-def test_its_files_are_those_of_a_short_run(
-    order: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
-) -> None:
-    plan = study(sweep={name: study()["sweep"][name] for name in order})
-    short = fl.run(plan, out=tmp_path / "short" / "run")
-    request.getfixturevalue("short_pieces")
-    long = fl.run(plan, out=tmp_path / "long" / "run", as_csv=True)
-
-    assert long.shown is not None
-    assert short.orbits is not None
-    assert long.orbits is not None
-    assert_frame_equal(_timeless(long.table), _timeless(short.table), check_exact=True)
-    assert_frame_equal(long.curves, short.curves, check_exact=True)
-    assert_frame_equal(long.orbits, short.orbits, check_exact=True)
-    assert long.verdicts == short.verdicts
-    assert long.counts == short.counts
-    for name in ("results.csv", "curves.csv"):
-        one, other = (pd.read_csv(tmp_path / way / "run" / name) for way in ("long", "short"))
-        assert_frame_equal(_timeless(one), _timeless(other), check_exact=True)
+AXES = "scene.damping_ratio", "scene.belt_speed", "scene.drive.frequency"
+ORDERS = [AXES, AXES[1:] + AXES[:1], AXES[2:] + AXES[:2]]
+ACROSS = GIVEN | {"transverse": {"natural_frequency": 0.5, "damping_ratio": 0.1}}
+WAYS: list[dict[str, Any]] = [{"sweep": {name: study()["sweep"][name] for name in order}} for order in ORDERS]
+WAYS += [{"keep": {"harmonics": 2}, "scene": ACROSS, "methods": ["exact", "mdsm"]}]
 
 
 def _timeless(table: pd.DataFrame) -> pd.DataFrame:
     return table.drop(columns="seconds", errors="ignore")
 
 
-def test_harmonics_of_a_long_run_are_those_of_a_short_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
-) -> None:
-    plan = study(keep={"harmonics": 2}, scene=SCENE | {"transverse": ACROSS}, methods=["exact", "mdsm"])
+@pytest.mark.parametrize("changes", WAYS)
+def test_its_files_are_those_of_a_short_run(changes: dict[str, Any], tmp_path: Path, request: Any) -> None:
+    plan, kept = study(**changes), "harmonics" if "keep" in changes else "orbits"
     short = fl.run(plan, out=tmp_path / "short" / "run")
     request.getfixturevalue("short_pieces")
-    long = fl.run(plan, out=tmp_path / "long" / "run")
+    long = fl.run(plan, out=tmp_path / "long" / "run", as_csv=True)
 
-    assert short.harmonics is not None
-    assert len(short.harmonics) > 0
-    assert_frame_equal(long.harmonics, short.harmonics, check_dtype=False)
+    assert long.shown is not None
+    assert len(getattr(short, kept)) > 0
+    for name in ("table", "curves", kept):
+        tables = (_timeless(getattr(run, name)) for run in (long, short))
+        assert_frame_equal(*tables, check_exact=True, check_dtype=name != "harmonics")
+    assert long.verdicts == short.verdicts
+    assert long.counts == short.counts
+    for name in ("results.csv", "curves.csv"):
+        tables = (_timeless(pd.read_csv(tmp_path / way / "run" / name)) for way in ("long", "short"))
+        assert_frame_equal(*tables, check_exact=True)
     again = fl.run(plan, out=tmp_path / "long" / "run")
     assert again.computed == 0
-    assert_frame_equal(again.harmonics, long.harmonics)
+    assert_frame_equal(getattr(again, kept), getattr(long, kept))
 
 
 def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Path) -> None:
-    fl.run(study(), out=tmp_path / "run")
-    assert not (tmp_path / "run" / "results.csv").exists()
-    fl.run(study(), out=tmp_path / "run", as_csv=True)
-    assert (tmp_path / "run" / "results.csv").exists()
-    fl.run(study(), out=tmp_path / "run")
-    assert (tmp_path / "run" / "results.csv").exists()  # of the same table
-    fl.run(study(), out=tmp_path / "run", columns=["floquet"])
-    assert not (tmp_path / "run" / "results.csv").exists()
+    there = []
+    for ways in ({}, {"as_csv": True}, {}, {"columns": ["floquet"]}):
+        fl.run(study(), out=tmp_path / "run", **ways)
+        there.append((tmp_path / "run" / "results.csv").exists())
+
+    assert there == [False, True, True, False]  # it stays while it is of the same table
 
 
 def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Path) -> None:
@@ -128,36 +106,24 @@ def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Pat
     assert_frame_equal(other.table, first.table, check_exact=True)
 
 
-def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
+def test_a_whole_table_needs_no_chunks_a_damaged_one_is_made_again(
     short_pieces: None, tmp_path: Path
 ) -> None:
-    coulomb = study(laws=study()["laws"][:1])
-    first = fl.run(coulomb, out=tmp_path / "run")
+    run = partial(fl.run, study(laws=[COULOMB]), out=tmp_path / "run")
+    first = run()
     shutil.rmtree(tmp_path / ".cache")
-    again = fl.run(coulomb, out=tmp_path / "run")
-    fewer = fl.run(coulomb, out=tmp_path / "run", columns=["floquet"])
+    again, fewer = run(), run(columns=["floquet"])
     table = tmp_path / "run" / "results.parquet"
     table.write_bytes(table.read_bytes()[:-9])
-    mended = fl.run(coulomb, out=tmp_path / "run", columns=["floquet"])
+    mended = run(columns=["floquet"])
 
     assert (first.computed, again.computed, fewer.computed, mended.computed) == (160, 0, 160, 0)
     assert "reversals" not in fewer.table
     assert_frame_equal(mended.table, fewer.table, check_exact=True)
 
 
-def test_a_long_run_that_is_interrupted_goes_on(
-    short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def collect_one(sent: Any, left: Any, *others: Any) -> None:
-        collect(sent, list(left)[:1], *others)
-        raise KeyboardInterrupt
-
-    collect = engine.Sent.collect
-    with monkeypatch.context() as patch:
-        patch.setattr(engine.Sent, "collect", collect_one)
-        with pytest.raises(study_run.Interrupted) as caught:
-            fl.run(study(), out=tmp_path / "run")
-    stopped = caught.value.run
+def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Path) -> None:
+    stopped = interrupted_after_one_piece(study(), tmp_path / "run")
     reasons = stopped.table.loc[stopped.table["status"] == "killed", "reason"]
     again = fl.run(study(), out=tmp_path / "run")
 
@@ -169,7 +135,7 @@ def test_a_long_run_that_is_interrupted_goes_on(
 
 
 def test_the_page_and_the_figures_show_some_and_tell_of_all(
-    short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    short_pieces: None, tmp_path: Path, monkeypatch: Any, capsys: Any
 ) -> None:
     monkeypatch.setattr(thinned, "MOST_POINTS", 7)
     monkeypatch.setattr(thinned, "MOST_ODD", 3)
@@ -189,9 +155,8 @@ def test_the_page_and_the_figures_show_some_and_tell_of_all(
 
 
 def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
-    rows = thinned.shown_rows(
-        parse_study(study(sweep={"scene.belt_speed": {"start": 1, "stop": 9, "num": 5000}}))
-    )
+    speeds = {"scene.belt_speed": {"start": 1, "stop": 9, "num": 5000}}
+    rows = thinned.shown_rows(parse_study(study(sweep=speeds)))
 
     assert {0, 4999, 5000, 9999} <= set(rows.tolist())
     assert len(rows) == 400
@@ -205,29 +170,26 @@ def test_shown_curves_of_many_make_a_grid_of_their_own() -> None:
         "scene.belt_speed": {"start": 1, "stop": 9, "num": 5},
         "scene.normal_load": {"start": 1, "stop": 5, "num": 33},
     }
-    wanted = parse_study(study(sweep=sweep, methods=["exact", "shooting"]))
-    shown, cases = thinned.shown_rows(wanted), wanted.cases()
-    chosen = [cases[row] for row in shown.tolist()]
+    plan = parse_study(study(sweep=sweep, methods=["exact", "shooting"]))
+    cases, shown = plan.cases(), thinned.shown_rows(plan).tolist()
+    told = Counter(
+        (
+            getattr(case.given_law, "mu_static", None),
+            case.method_label,
+            case.scene.frequency,
+            case.scene.normal_load,
+        )
+        for case in (cases[row] for row in shown)
+    )
 
-    for law, parameters in (("coulomb", {None}), ("static", {0.5, 0.6, 0.7})):
-        own = [case for case in chosen if case.law_label == law]
-        values = [
-            {getattr(case.given_law, "mu_static", None) for case in own},
-            {case.method_label for case in own},
-            {case.scene.frequency for case in own},
-            {case.scene.normal_load for case in own},
-        ]
-        assert values[:2] == [parameters, {"exact", "shooting"}]
-        assert (values[2], values[3]) == ({1.0, 1.5, 2.0}, {1.0, 3.0, 5.0})
-        assert len(own) == 5 * np.prod([len(each) for each in values])
+    beside = {"exact", "shooting"}, {1.0, 1.5, 2.0}, {1.0, 3.0, 5.0}
+    assert told == dict.fromkeys(product({None, 0.5, 0.6, 0.7}, *beside), 5)
 
 
 def test_a_long_run_keeps_the_memory_of_laws_that_come_later(tmp_path: Path, short_pieces: None) -> None:
-    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 4}]
+    laws = [COULOMB, {"kind": "dahl", "mu": 0.4, "stiffness": 4}]
     wanted = study(laws=laws, methods=["shooting"], expect=[])
     long, short = fl.run(wanted, tmp_path / "long"), fl.run(wanted)
     assert long.shown is not None
-    assert long.orbits is not None
-    assert short.orbits is not None
     assert list(long.orbits) == list(short.orbits)
     assert long.orbits.memory_0.notna().sum() == len(long.orbits) // 2

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fake_methods import Fake, faked, register
+from fake_methods import Fake, Trouble, faked
+from fig_4b import LAW, SCENE
 
 import frictionlab as fl
 from frictionlab.runner import engine as limit
@@ -29,11 +30,10 @@ def run_elsewhere(study: dict[str, Any], out: Path | None = None) -> Any:
 
 
 @pytest.fixture
-def released(monkeypatch: pytest.MonkeyPatch) -> Any:
+def released(fakes: None, trouble: Trouble) -> Any:
     """The method takes for ever at a belt speed of 6, until the test is over."""
     event = threading.Event()
-    register(monkeypatch, fake=Fake)
-    monkeypatch.setattr(Fake, "troubles", {6.0: lambda: event.wait(60.0)})
+    trouble({6.0: lambda: event.wait(60.0)})
     yield event
     event.set()
 
@@ -82,22 +82,18 @@ def test_work_within_a_limit_gives_its_result_or_its_error():
 
 def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypatch):
     allowed = []
-    monkeypatch.setattr(
-        limit, "within", lambda seconds, work, chunk, **_: allowed.append(seconds) or work(chunk)
-    )
+    told = lambda seconds, work, chunk, **_: allowed.append(seconds) or work(chunk)  # noqa: E731
+    monkeypatch.setattr(limit, "within", told)
     run_elsewhere(STUDY | {"sweep": {"scene.belt_speed": [10.0 + 0.01 * k for k in range(50)]}})
 
     assert allowed == [0.3 * 50 / 10]
 
 
 def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
-    scene = fl.Scene(
-        damping_ratio=0.1, normal_load=10, belt_speed=6, drive=fl.Drive(unbalance=10, frequency=1)
-    )
     threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
 
     with pytest.raises(KeyboardInterrupt):
-        fl.steady_state(scene, fl.Coulomb(mu=0.4), method=Fake())
+        fl.steady_state(SCENE.with_(belt_speed=6), LAW, method=Fake())
 
 
 def test_work_that_is_given_up_holds_nobody_back(released):

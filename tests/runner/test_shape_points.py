@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from fig_4b import COULOMB, LAW, SCENE, over_speeds
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -11,9 +14,6 @@ import frictionlab as fl
 from frictionlab.curves.verdict import Estimate, FrictionCurve, UnreadableCurve, shape_of
 from frictionlab.runner.curve_loads import lacking_speeds, speeds_to_add
 from frictionlab.scene.scenes import Scenes
-
-SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
-LAW = fl.Coulomb(mu=0.4)
 
 
 def curve(speeds: list[float], end: float) -> FrictionCurve:
@@ -84,20 +84,20 @@ def test_belt_speeds_are_advised_where_they_give_a_shape_and_nowhere_else(shaken
     speeds = np.linspace(0.2, 3.0, 6)
     _, more = speeds_to_add([(Scenes(fl.Scene(belt_speed=1.0, **scene), speeds), fl.Coulomb(**law))])
     asked = more or lacking_speeds(speeds, 0.5)
-    study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", **law}], "columns": ["shape"]}
-    found = fl.run(study | {"sweep": {"scene.belt_speed": [*speeds, *asked]}}).curves
+    others = {"scene": scene, "laws": [COULOMB | law], "methods": ["auto"], "columns": ["shape"]}
+    found = fl.run(over_speeds([*speeds, *asked], **others)).curves
 
     assert bool(more) == bool(found["shape"].notna().all())
     assert bool(more) == (shaken == "drive" and static == 0.4)
 
 
-def test_friction_that_falls_with_speed_may_have_no_end_of_reversal() -> None:
-    law = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4)
-    assert speeds_to_add([(Scenes(SCENE, np.array([5.0, 10.0])), law)]) == (0, [])
+UNDRIVEN = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=0.5)
+FALLS = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4)
 
 
-def test_points_undriven_bodies_and_single_speeds_have_no_shape_to_lack() -> None:
-    undriven = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=0.5)
-
-    assert speeds_to_add([(Scenes(undriven, np.array([0.5, 1.0])), LAW)]) == (0, [])
-    assert speeds_to_add([(Scenes(SCENE, np.array([5.0])), LAW)]) == (0, [])
+@pytest.mark.parametrize(
+    ("scene", "law", "speeds"),
+    [(SCENE, FALLS, [5.0, 10.0]), (UNDRIVEN, LAW, [0.5, 1.0]), (SCENE, LAW, [5.0])],
+)
+def test_what_has_no_end_of_reversal_or_no_curve_lacks_no_shape(scene: Any, law: Any, speeds: Any) -> None:
+    assert speeds_to_add([(Scenes(scene, np.array(speeds)), law)]) == (0, [])

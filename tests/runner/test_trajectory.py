@@ -6,18 +6,18 @@ import math
 
 import numpy as np
 import pytest
+from fig_4b import LAW, SCENE
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
 
-SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 PLANAR = SCENE.with_(transverse={"natural_frequency": 2, "damping_ratio": 0.2, "load": {"unbalance": 3}})
 START = fl.Initial(x=3.0, velocity=-2.0)
 
 
 @pytest.mark.parametrize(
     ("scene", "law"),
-    [(SCENE, fl.Coulomb(mu=0.4)), (SCENE, fl.Dahl(mu=0.4, stiffness=4.0)), (PLANAR, fl.Coulomb(mu=0.4))],
+    [(SCENE, LAW), (SCENE, fl.Dahl(mu=0.4, stiffness=4.0)), (PLANAR, LAW)],
 )
 def test_it_begins_at_the_start_and_ends_on_the_steady_orbit(scene: fl.Scene, law: FrictionLaw) -> None:
     motion = fl.trajectory(scene, law, periods=40, samples=60, initial=START)
@@ -30,8 +30,8 @@ def test_it_begins_at_the_start_and_ends_on_the_steady_orbit(scene: fl.Scene, la
 
 
 def test_the_mass_obeys_the_equation_of_motion_across_the_ends_of_periods() -> None:
-    law, n = fl.Coulomb(mu=0.4), 4000
-    motion = fl.trajectory(SCENE, law, periods=3, samples=n, initial=START)
+    n = 4000
+    motion = fl.trajectory(SCENE, LAW, periods=3, samples=n, initial=START)
     step = 2.0 * math.pi / n
     inertia = np.gradient(motion.v1.to_numpy(), step)
     force = motion.load - 0.2 * motion.v1 - motion.x1 - motion.normal_load * motion.friction
@@ -46,7 +46,7 @@ def test_the_mass_obeys_the_equation_of_motion_across_the_ends_of_periods() -> N
 
 def test_a_motion_that_never_settles_is_followed_all_the_same() -> None:
     undamped = SCENE.with_(damping_ratio=0.0, belt_speed=60.0, **{"drive.frequency": 1.7})
-    motion = fl.trajectory(undamped, fl.Coulomb(mu=0.4), periods=3, initial=START)
+    motion = fl.trajectory(undamped, LAW, periods=3, initial=START)
     assert np.isfinite(motion.x1).all()
 
 
@@ -60,6 +60,5 @@ def test_a_motion_that_never_settles_is_followed_all_the_same() -> None:
     ],
 )
 def test_what_cannot_be_followed_is_told(given: dict[str, object], told: str) -> None:
-    told_of = {"scene": SCENE, "law": fl.Coulomb(mu=0.4)} | given
     with pytest.raises(ValueError, match=told):
-        fl.trajectory(**told_of)  # type: ignore[arg-type]
+        fl.trajectory(**{"scene": SCENE, "law": LAW} | given)  # type: ignore[arg-type]

@@ -6,53 +6,39 @@ import re
 from typing import Any
 
 import pytest
+from fig_4b import GIVEN, LAW, SCENE
 from profiles import deep
 
 import frictionlab as fl
 from frictionlab.runner.state import SteadyState
 
-COULOMB = fl.Coulomb(mu=0.4)
 GENTLE = fl.Stribeck(mu_kinetic=0.39, mu_static=0.4)
 STEEP = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4)
 TWO_STATES = fl.Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)
 DAHL = fl.Dahl(mu=0.4, stiffness=40.0)
-FULL = {"damping_ratio": 0.1, "normal_load": 10.0, "belt_speed": 5.0}
-DRIVE = fl.Drive(unbalance=10.0, frequency=1.0)
+SLIP = {"slip": fl.Slip(velocity_amplitude=3.0, frequency=1.0), "belt_speed": 1.0}
+ACROSS = fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load={"unbalance": 1})
+UNDAMPED = {"damping_ratio": 0.0, "drive": fl.Drive(unbalance=10, frequency=1.5)}
 
 
 def state(law: fl.FrictionLaw, method: str = "auto", **changes: Any) -> SteadyState:
-    drive = {} if "slip" in changes else {**FULL, "drive": DRIVE}
-    given = {name: value for name, value in {**drive, **changes}.items() if value is not None}
-    return fl.steady_state(fl.Scene(**given), law, method=method)
+    given = {} if "slip" in changes else GIVEN
+    return fl.steady_state(fl.Scene(**{**given, **changes}), law, method=method)
 
 
 @pytest.mark.parametrize(
-    ("found", "said"),
+    ("law", "method", "changes", "said"),
     [
-        (lambda: state(COULOMB), "damped"),
-        (lambda: state(COULOMB, belt_speed=60.0), "damped"),
-        (lambda: state(COULOMB, belt_speed=0.0), "damped"),
-        (
-            lambda: state(COULOMB, damping_ratio=0.0, drive=fl.Drive(unbalance=10, frequency=1.5)),
-            "neighbours",
-        ),
-        (lambda: state(COULOMB, "shooting"), "damped"),
-        (lambda: state(GENTLE), "slow fall"),
-        (
-            lambda: state(
-                COULOMB,
-                transverse=fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load={"unbalance": 1}),
-            ),
-            "damped",
-        ),
-        (
-            lambda: state(STEEP, slip=fl.Slip(velocity_amplitude=3.0, frequency=1.0), belt_speed=1.0),
-            "slip",
-        ),
+        *((LAW, "auto", {"belt_speed": speed}, "damped") for speed in (5.0, 60.0, 0.0)),
+        (LAW, "auto", UNDAMPED, "neighbours"),
+        (LAW, "shooting", {}, "damped"),
+        (GENTLE, "auto", {}, "slow fall"),
+        (LAW, "auto", {"transverse": ACROSS}, "damped"),
+        (STEEP, "auto", SLIP, "slip"),
     ],
 )
-def test_a_theorem_is_named(found: Any, said: str) -> None:
-    one = found()
+def test_a_theorem_is_named(law: fl.FrictionLaw, method: str, changes: dict[str, Any], said: str) -> None:
+    one = state(law, method, **changes)
 
     assert (one.status, one.unique) == ("ok", "proved")
     assert f"; unique: {said}" in one.model
@@ -82,31 +68,25 @@ def test_other_states_are_told() -> None:
     weak = fl.Drive(amplitude=0.05, frequency=3.0)
     falls = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": weak, "belt_speed": 0.6}
     held = {"drive": fl.Drive(unbalance=2.0, frequency=1.0), "belt_speed": 0.0}
-    chosen = state(COULOMB, **held, initial=fl.Initial(x=1.0))
+    chosen = state(LAW, **held, initial=fl.Initial(x=1.0))
 
-    assert [state(TWO_STATES, **falls).unique, state(COULOMB, **held).unique] == ["no", "no"]
-    assert state(COULOMB, "shooting", **held).unique == "no"
+    assert [state(TWO_STATES, **falls).unique, state(LAW, **held).unique] == ["no", "no"]
+    assert state(LAW, "shooting", **held).unique == "no"
     assert (chosen.status, chosen.unique) == ("ok", "no")
     assert "unique: " not in chosen.model
 
 
 @deep("seconds of maps")
 def test_nothing_is_said_where_nothing_was_asked() -> None:
-    assert state(COULOMB, "mdsm", belt_speed=5.0).unique == ""
-    assert state(COULOMB, "march").unique == ""
-    assert state(COULOMB, "shooting", drive=None).unique == ""
-    assert state(DAHL, slip=fl.Slip(velocity_amplitude=3.0, frequency=1.0), belt_speed=1.0).unique == ""
+    asked = [state(LAW, "mdsm"), state(LAW, "march"), state(LAW, "shooting", drive=None), state(DAHL, **SLIP)]
     refused = state(STEEP, "exact")
-    assert (refused.status, refused.unique) == ("refused", "")
+
+    assert [each.unique for each in (*asked, refused)] == [""] * 5
+    assert refused.status == "refused"
 
 
-def test_an_answer_that_failed_is_no_state(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = fl.steady_state(fl.Scene(**FULL, drive=DRIVE), COULOMB, tolerance=1e-30)
+def test_the_column_is_in_the_table_and_empty_where_a_point_failed() -> None:
+    failed = fl.steady_state(SCENE, LAW, tolerance=1e-30)
 
-    assert (asked.status, asked.unique) == ("failed", "")
-
-
-def test_the_column_is_in_the_table() -> None:
-    table = fl.curve(fl.Scene(**FULL, drive=DRIVE), COULOMB, [5.0, 60.0])
-
-    assert table["unique"].tolist() == ["proved", "proved"]
+    assert (failed.status, failed.unique) == ("failed", "")
+    assert fl.curve(SCENE, LAW, [5.0, 60.0])["unique"].tolist() == ["proved", "proved"]

@@ -8,7 +8,6 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner import warm as module
 from frictionlab.runner.warm import SCENES, Warmed, _form, forms, warm
 from frictionlab.study import registry
@@ -32,21 +31,14 @@ def test_a_law_has_all_forms_that_kernels_are_compiled_for() -> None:
 
 def test_each_kind_of_scene_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here by Python: which kernels are compiled ahead is the same."""
-    asked: list[tuple[int, FrictionLaw]] = []
-    monkeypatch.setattr(
-        module, "steady_state", lambda scene, law, tolerance: asked.append((scene.degrees_of_freedom, law))
-    )
-    curves: list[int] = []
-    monkeypatch.setattr(
-        module, "curve", lambda scene, law, speeds, tolerance: curves.append(scene.degrees_of_freedom)
-    )
-    done = list(warm({"coulomb": fl.Coulomb}))
+    asked: dict[str, set[int]] = {"steady_state": set(), "curve": set()}
+    for name, freedoms in asked.items():
+        told = lambda scene, *_, freedoms=freedoms, **__: freedoms.add(scene.degrees_of_freedom)  # noqa: E731
+        monkeypatch.setattr(module, name, told)
+    done = [each._replace(seconds=0.0) for each in warm({"coulomb": fl.Coulomb})]
 
-    assert [each._replace(seconds=0.0) for each in done] == [
-        Warmed("coulomb", scene, 0, 0.0) for scene in SCENES
-    ]
-    assert sorted({freedom for freedom, _ in asked}) == [0, 1, 2]
-    assert set(curves) == {2}
+    assert done == [Warmed("coulomb", scene, 0, 0.0) for scene in SCENES]
+    assert asked == {"steady_state": {0, 1, 2}, "curve": {2}}
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -54,14 +46,10 @@ def test_its_scenes_have_answers(scene: str) -> None:
     assert fl.steady_state(SCENES[scene], fl.Coulomb(mu=0.5), tolerance=1e-4).status == "ok"
 
 
-def test_a_kernel_compiled_ahead_serves_the_next_process(
-    tmp_path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_kernel_compiled_ahead_serves_the_next_process(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path))
     monkeypatch.setattr(module, "SCENES", {"a point": SCENES["slip given along the belt"]})
-    monkeypatch.setattr(
-        module, "steady_state", lambda scene, law, tolerance: KernelCall(friction_at, law)(1.0)
-    )
+    monkeypatch.setattr(module, "steady_state", lambda _, law, **__: KernelCall(friction_at, law)(1.0))
 
     assert cli.main(["warm", "coulomb"]) == 0
     assert capsys.readouterr().out.startswith("coulomb, a point: 1 compiled in ")

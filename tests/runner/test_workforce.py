@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fig_4b import COULOMB, over_speeds
 from pandas.testing import assert_frame_equal
 from profiles import deep
 
@@ -26,18 +27,14 @@ from frictionlab.study.written import yaml_text
 
 pytestmark = deep("processes")
 
-STUDY: dict[str, Any] = {
-    "schema": 1,
-    "scene": {"damping_ratio": 0.1, "normal_load": 10, "drive": {"unbalance": 10, "frequency": 1}},
-    "laws": [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.3, "label": "weak"}],
-    "methods": ["exact"],
-    "sweep": {"scene.belt_speed": {"start": 0.5, "stop": 12, "num": 500}},
-}
+LAWS = [COULOMB, {"kind": "coulomb", "mu": 0.3, "label": "weak"}]
+SPEEDS = {"start": 0.5, "stop": 12, "num": 500}
+STUDY = over_speeds(SPEEDS, laws=LAWS)
 SCRIPT = Path(__file__).parents[1] / "killed_workers.py"
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-@pytest.mark.parametrize("way", ["processes", "cluster", pytest.param("parts")])
+@pytest.mark.parametrize("way", ["processes", "cluster", "parts"])
 def test_workers_that_are_killed_change_nothing(way: str) -> None:
     if way == "cluster":
         pytest.importorskip("distributed")
@@ -48,37 +45,24 @@ def test_workers_that_are_killed_change_nothing(way: str) -> None:
 
 
 class LosesWorkers(ThreadPoolExecutor):
-    """Threads, the first of whose chunks come back as if a worker had died, so often."""
+    """Threads, some of whose chunks come back as if a worker had died: the first so many, or of every three two."""
 
-    def __init__(self, losses: int, problem: type[Exception]) -> None:
+    def __init__(self, losses: int | None, problem: type[Exception] = BrokenExecutor) -> None:
         super().__init__(1)
-        self.left, self.problem = losses, problem
+        self.losses, self.problem, self.sent = losses, problem, 0
 
     def submit(self, *given: Any, **named: Any) -> Future[Any]:
-        if not self.left:
+        self.sent += 1
+        if self.sent % 3 == 0 if self.losses is None else self.sent > self.losses:
             return super().submit(*given, **named)
-        self.left -= 1
         lost: Future[Any] = Future()
         lost.set_exception(self.problem("gone"))
         return lost
 
 
 def test_a_pool_that_breaks_again_and_again_is_made_anew_while_something_comes_back() -> None:
-    class Breaks(ThreadPoolExecutor):
-        """Of every three chunks two come back as if the pool had broken."""
-
-        sent = 0
-
-        def submit(self, *given: Any, **named: Any) -> Future[Any]:
-            self.sent += 1
-            if self.sent % 3 == 0:
-                return super().submit(*given, **named)
-            lost: Future[Any] = Future()
-            lost.set_exception(BrokenExecutor("gone"))
-            return lost
-
-    pool = Breaks(1)
-    many = STUDY | {"sweep": {"scene.belt_speed": {"start": 0.5, "stop": 12, "num": 2000}}}
+    pool = LosesWorkers(None)
+    many = over_speeds(SPEEDS | {"num": 2000}, laws=LAWS)
 
     assert fl.run(many, executor=Workforce(pool, lambda: pool)).counts == {"ok": 4000}
     assert pool.sent > 60
@@ -90,17 +74,12 @@ def test_a_chunk_whose_worker_is_lost_is_sent_again(problem: type[Exception]) ->
     done = fl.run(STUDY, executor=Workforce(pool, lambda: pool))
 
     assert done.counts == {"ok": 1000}
-    assert pool.left == 0
+    assert pool.sent > 4
 
 
-def test_where_workers_are_lost_for_good_the_rest_is_killed_and_what_is_solved_is_kept(
-    tmp_path: Path,
-) -> None:
-    pool = LosesWorkers(0, OSError)
-    done_before = fl.run(STUDY | {"laws": STUDY["laws"][:1]}, out=tmp_path / "one")
-    pool.left = 1000
-
-    stopped = fl.run(STUDY, out=tmp_path / "both", executor=pool)
+def test_where_workers_are_lost_for_good_the_rest_is_killed_and_what_is_solved_kept(tmp_path: Path) -> None:
+    done_before = fl.run(STUDY | {"laws": LAWS[:1]}, out=tmp_path / "one")
+    stopped = fl.run(STUDY, out=tmp_path / "both", executor=LosesWorkers(1000, OSError))
 
     assert done_before.computed == 500
     assert stopped.counts == {"ok": 500, "killed": 500}
@@ -110,7 +89,7 @@ def test_where_workers_are_lost_for_good_the_rest_is_killed_and_what_is_solved_i
 
 
 def test_a_pool_that_breaks_without_another_ends_the_run() -> None:
-    done = fl.run(STUDY, executor=LosesWorkers(1, BrokenExecutor))
+    done = fl.run(STUDY, executor=LosesWorkers(1))
 
     assert done.counts.get("ok", 0) < 1000
     assert set(done.table.loc[done.table["status"] == "killed", "reason"]) == {"a worker died: gone"}
@@ -129,32 +108,24 @@ def test_parts_share_all_chunks_between_them(tmp_path: Path) -> None:
     assert_frame_equal(gathered.table, fl.run(plan).table, check_exact=True)
 
 
-@pytest.mark.parametrize("part", ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1.5/2"])
-def test_a_part_that_is_none_is_refused(
-    part: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "study.yaml").write_text(yaml_text(STUDY))
+PARTS = ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1.5/2"]
+REFUSED = [
+    *((["--part", part], f"must be I/N with 1 <= I <= N, such as 3/16, got '{part}'") for part in PARTS),
+    (["-j", "2", "--processes", "2"], "-j and --processes say who solves the points; give one of them"),
+    (["--part", "1/2", "--json"], "--part and --json print different things; give one of them"),
+    (["--scheduler", "tcp://127.0.0.1:9"], "scheduler"),
+]
 
-    assert cli.main(["run", str(tmp_path / "study.yaml"), "--part", part]) == 2
-    assert f"must be I/N with 1 <= I <= N, such as 3/16, got '{part}'" in capsys.readouterr().err
 
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["-j", "2", "--processes", "2"], "-j and --processes say who solves the points; give one of them"),
-        (["--part", "1/2", "--json"], "--part and --json print different things; give one of them"),
-        (["--scheduler", "tcp://127.0.0.1:9"], "scheduler"),
-    ],
-)
-def test_options_that_make_no_sense_are_refused(
-    options: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+@pytest.mark.parametrize(("options", "said"), REFUSED)
+def test_options_without_sense_are_refused(
+    options: list[str], said: str, tmp_path: Path, capsys: Any, monkeypatch: Any
 ) -> None:
     monkeypatch.setattr(workforce, "ANSWERS_WITHIN", 1.0)
     (tmp_path / "study.yaml").write_text(yaml_text(STUDY))
 
     assert cli.main(["run", str(tmp_path / "study.yaml"), "-o", str(tmp_path / "out"), *options]) == 2
-    assert message in capsys.readouterr().err
+    assert said in capsys.readouterr().err
 
 
 SBATCH = """#!{python}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any, cast
@@ -61,137 +62,125 @@ def shape(law: str, verdict: str | None, reason: str | None = None, **others: An
 
 ROUGH = [curve("coulomb", [0.1, 0.32]), curve("coulomb", [0.1, 0.3], error=0.05).assign(method="mdsm")]
 
-WHO_IS_HIGHEST_WHERE: dict[str, tuple[list[pd.DataFrame], str]] = {
-    "one point is told with its number and its error": (
-        [curve("coulomb", [0.25], error=0.002)],
-        "The mean friction coefficient of Coulomb is 0.250 ± 0.002 at vb = 1.",
-    ),
-    "a curve that rises is told by its ends": (
-        [curve("coulomb", [0.1, 0.2, 0.2, 0.4])],
-        "Mean friction of Coulomb rises from 0.1 at vb = 1 to 0.4 at vb = 4.",
-    ),
-    "two points make a curve that falls": (
-        [curve("coulomb", [0.4, 0.1])],
-        "Mean friction of Coulomb falls from 0.4 at vb = 1 to 0.1 at vb = 2.",
-    ),
-    "a curve that turns is told by its least and greatest": (
-        [curve("coulomb", [0.3, 0.1, 0.4, 0.2])],
-        "Mean friction of Coulomb is smallest, 0.1, at vb = 2 and largest, 0.4, at vb = 3.",
-    ),
-    "a curve that is flat within its errors is said to be": (
-        [curve("coulomb", [0.4, 0.401, 0.4], error=0.01)],
-        "Mean friction of Coulomb is the same within its errors at all 3 points: 0.40 ± 0.01.",
-    ),
-    "a law without a number anywhere is named": (
-        [curve("coulomb", [0.1, 0.2]), curve("dahl", [NONE] * 2)],
-        "Mean friction of Coulomb rises from 0.1 at vb = 1 to 0.2 at vb = 2; dahl has no number.",
-    ),
-    "the law that is highest everywhere is named once": (
-        [curve("coulomb", [0.1, 0.2], error=2e-3), curve("dahl", [0.15, 0.3], error=2e-3)],
-        f"{HIGHEST}dahl at all 2 belt speeds; dahl is up to 0.100 ± 0.004 above Coulomb, at vb = 2.",
-    ),
-    "laws that are highest in turn have their stretches": (
-        [curve("coulomb", [0.1, 0.2, 0.3, 0.4, 0.4]), curve("dahl", [0.2, 0.3, 0.2, 0.3, 0.4])],
+WHO_IS_HIGHEST_WHERE: dict[str, list[pd.DataFrame]] = {
+    # one point is told with its number and its error
+    "The mean friction coefficient of Coulomb is 0.250 ± 0.002 at vb = 1.": [
+        curve("coulomb", [0.25], error=0.002)
+    ],
+    # a curve that rises is told by its ends
+    "Mean friction of Coulomb rises from 0.1 at vb = 1 to 0.4 at vb = 4.": [
+        curve("coulomb", [0.1, 0.2, 0.2, 0.4])
+    ],
+    # two points make a curve that falls
+    "Mean friction of Coulomb falls from 0.4 at vb = 1 to 0.1 at vb = 2.": [curve("coulomb", [0.4, 0.1])],
+    # a curve that turns is told by its least and greatest
+    "Mean friction of Coulomb is smallest, 0.1, at vb = 2 and largest, 0.4, at vb = 3.": [
+        curve("coulomb", [0.3, 0.1, 0.4, 0.2])
+    ],
+    # a curve that is flat within its errors is said to be
+    "Mean friction of Coulomb is the same within its errors at all 3 points: 0.40 ± 0.01.": [
+        curve("coulomb", [0.4, 0.401, 0.4], error=0.01)
+    ],
+    # a law without a number anywhere is named
+    "Mean friction of Coulomb rises from 0.1 at vb = 1 to 0.2 at vb = 2; dahl has no number.": [
+        curve("coulomb", [0.1, 0.2]),
+        curve("dahl", [NONE] * 2),
+    ],
+    # the law that is highest everywhere is named once
+    f"{HIGHEST}dahl at all 2 belt speeds; dahl is up to 0.100 ± 0.004 above Coulomb, at vb = 2.": [
+        curve("coulomb", [0.1, 0.2], error=2e-3),
+        curve("dahl", [0.15, 0.3], error=2e-3),
+    ],
+    # laws that are highest in turn have their stretches
+    (
         f"{HIGHEST}dahl up to vb = 2 and Coulomb from vb = 3 to vb = 4; "
-        "at vb = 5 the highest are the same within errors; ...",
-    ),
-    "of laws that change places often the largest distance is told": (
-        [
-            curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
-            curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
-        ],
-        "No law is highest everywhere: dahl is up to 0.1 above Coulomb, at vb = 1.",
-    ),
-    "of several laws that change places the one furthest from the reference law is told": (
-        [
-            curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
-            curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
-            curve("lugre", [0.3, 0.1, 0.1, 0.05, 0.1, 0.1]),
-        ],
-        "No law is highest everywhere; furthest from Coulomb: lugre is up to 0.2 above Coulomb, at vb = 1.",
-    ),
-    "whoever is furthest at several settings is named once": (
-        [
-            curve(law, [each * share for each in means], **{FREQUENCY: share})
-            for share in (1.0, 2.0)
-            for law, means in {"coulomb": [0.1, 0.4] * 3, "dahl": [0.3, 0.1] * 3, "b": [0.2] * 6}.items()
-        ],
+        "at vb = 5 the highest are the same within errors; ..."
+    ): [curve("coulomb", [0.1, 0.2, 0.3, 0.4, 0.4]), curve("dahl", [0.2, 0.3, 0.2, 0.3, 0.4])],
+    # of laws that change places often the largest distance is told
+    "No law is highest everywhere: dahl is up to 0.1 above Coulomb, at vb = 1.": [
+        curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
+        curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
+    ],
+    # of several laws that change places the one furthest from the reference law is told
+    "No law is highest everywhere; furthest from Coulomb: lugre is up to 0.2 above Coulomb, at vb = 1.": [
+        curve("coulomb", [0.1, 0.2, 0.1, 0.2, 0.1, 0.2]),
+        curve("dahl", [0.2, 0.1, 0.2, 0.1, 0.2, 0.1]),
+        curve("lugre", [0.3, 0.1, 0.1, 0.05, 0.1, 0.1]),
+    ],
+    # whoever is furthest at several settings is named once
+    (
         "No law is highest everywhere; furthest from Coulomb: "
-        "Coulomb is up to 0.3 above dahl, at vb = 2, Ω = 1; 0.6 at vb = 2, Ω = 2.",
-    ),
-    "laws that do not differ by more than their errors are the same": (
-        [curve("coulomb", [0.1, 0.2], error=0.02), curve("dahl", [0.11, 0.19], error=0.02)],
-        "Mean friction is the same within errors for Coulomb and dahl at all 2 belt speeds.",
-    ),
-    "of several laws at one point the highest has its number": (
-        [curve("coulomb", [0.1]), curve("dahl", [0.3]), curve("lugre", [0.2])],
-        f"{HIGHEST}dahl: 0.3, which is 0.1 above lugre, the next.",
-    ),
-    "a law without a number somewhere is not ranked there and that is said": (
-        [curve("coulomb", [0.1, 0.2, 0.3]), curve("dahl", [0.2, 0.3, NONE]), curve("b", [0.0] * 3)],
-        f"{HIGHEST}dahl up to vb = 2 and Coulomb at vb = 3 (of those with a number); ...",
-    ),
-    "of one law the curves are ranked": (
-        [curve("coulomb", [0.1, 0.2], **{FREQUENCY: 1.0}), curve("coulomb", [0.2, 0.4], **{FREQUENCY: 1.5})],
-        "Mean friction of Coulomb is highest for Ω = 1.5 at all 2 belt speeds; ...",
-    ),
-    "points of several sweeps are told with all of them": (
-        [
-            curve(law, [high * frequency, high], **{FREQUENCY: frequency})
-            for law, high in (("coulomb", 0.1), ("dahl", 0.2))
-            for frequency in (1.0, 1.5)
-        ],
-        f"{HIGHEST}dahl at all 4 points; dahl is up to 0.15 above Coulomb, at vb = 1, Ω = 1.5.",
-    ),
-    "friction swept for all laws together is compared value by value": (
-        [curve("coulomb", [mu, mu], **{"law.mu": mu, "law.mu_kinetic": NONE}) for mu in (0.1, 0.2)]
-        + [curve("stribeck", [mu + 0.01] * 2, **{"law.mu": NONE, "law.mu_kinetic": mu}) for mu in (0.1, 0.2)],
-        f"{HIGHEST}stribeck at all 4 points; ...",
-    ),
-    "laws that change places have the largest distance of each setting": (
-        [
-            curve(law, means, **{FREQUENCY: frequency})
-            for frequency, own in ((1.0, ([0.1, 0.3], [0.2, 0.1])), (1.5, ([0.1, 0.2], [0.3, 0.1])))
-            for law, means in zip(("coulomb", "dahl"), own, strict=True)
-        ],
+        "Coulomb is up to 0.3 above dahl, at vb = 2, Ω = 1; 0.6 at vb = 2, Ω = 2."
+    ): [
+        curve(law, [each * share for each in means], **{FREQUENCY: share})
+        for share in (1.0, 2.0)
+        for law, means in {"coulomb": [0.1, 0.4] * 3, "dahl": [0.3, 0.1] * 3, "b": [0.2] * 6}.items()
+    ],
+    # laws that do not differ by more than their errors are the same
+    "Mean friction is the same within errors for Coulomb and dahl at all 2 belt speeds.": [
+        curve("coulomb", [0.1, 0.2], error=0.02),
+        curve("dahl", [0.11, 0.19], error=0.02),
+    ],
+    # of several laws at one point the highest has its number
+    f"{HIGHEST}dahl: 0.3, which is 0.1 above lugre, the next.": [
+        curve("coulomb", [0.1]),
+        curve("dahl", [0.3]),
+        curve("lugre", [0.2]),
+    ],
+    # a law without a number somewhere is not ranked there and that is said
+    f"{HIGHEST}dahl up to vb = 2 and Coulomb at vb = 3 (of those with a number); ...": [
+        curve("coulomb", [0.1, 0.2, 0.3]),
+        curve("dahl", [0.2, 0.3, NONE]),
+        curve("b", [0.0] * 3),
+    ],
+    # of one law the curves are ranked
+    "Mean friction of Coulomb is highest for Ω = 1.5 at all 2 belt speeds; ...": [
+        curve("coulomb", [0.1, 0.2], **{FREQUENCY: 1.0}),
+        curve("coulomb", [0.2, 0.4], **{FREQUENCY: 1.5}),
+    ],
+    # points of several sweeps are told with all of them
+    f"{HIGHEST}dahl at all 4 points; dahl is up to 0.15 above Coulomb, at vb = 1, Ω = 1.5.": [
+        curve(law, [high * frequency, high], **{FREQUENCY: frequency})
+        for law, high in (("coulomb", 0.1), ("dahl", 0.2))
+        for frequency in (1.0, 1.5)
+    ],
+    # friction swept for all laws together is compared value by value
+    f"{HIGHEST}stribeck at all 4 points; ...": [
+        curve("coulomb", [mu, mu], **{"law.mu": mu, "law.mu_kinetic": NONE}) for mu in (0.1, 0.2)
+    ]
+    + [curve("stribeck", [mu + 0.01] * 2, **{"law.mu": NONE, "law.mu_kinetic": mu}) for mu in (0.1, 0.2)],
+    # laws that change places have the largest distance of each setting
+    (
         "No law is highest everywhere: Coulomb is up to 0.2 above dahl, at vb = 2, Ω = 1; "
-        "dahl is up to 0.2 above Coulomb, at vb = 1, Ω = 1.5.",
-    ),
-    "a mean that changes its sign does so between neighbours": (
-        [curve("coulomb", [-0.1, -0.05, 0.2])],
-        "...rises from \N{MINUS SIGN}0.1 at vb = 1 to 0.2 at vb = 3, through zero between vb = 2 and vb = 3.",
-    ),
-    "a reduced model is judged by the full answers beside it": (
-        ROUGH,
-        "The closed form is up to 0.02 too low, at vb = 2.",
-    ),
-    "a reduced model is judged at each setting": (
-        [
-            curve("coulomb", [0.1, 0.3 + off], error=error, **{FREQUENCY: frequency, "method": method})
-            for frequency in (1.0, 1.5)
-            for method, off, error in (("mdsm", frequency - 1.2, 0.5), ("exact", 0.0, 1e-9))
-        ],
-        "At Ω = 1 the closed form is up to 0.2 too low (vb = 2), at Ω = 1.5 up to 0.3 too high (vb = 2).",
-    ),
-    "a reduced model alone is told with its own error": (
-        ROUGH[1:],
-        "...at vb = 1 to 0.30 ± 0.05 at vb = 2; the closed form is off by at most 0.05, at vb = 1.",
-    ),
+        "dahl is up to 0.2 above Coulomb, at vb = 1, Ω = 1.5."
+    ): [
+        curve(law, means, **{FREQUENCY: frequency})
+        for frequency, own in ((1.0, ([0.1, 0.3], [0.2, 0.1])), (1.5, ([0.1, 0.2], [0.3, 0.1])))
+        for law, means in zip(("coulomb", "dahl"), own, strict=True)
+    ],
+    # a mean that changes its sign does so between neighbours
+    "...rises from \N{MINUS SIGN}0.1 at vb = 1 to 0.2 at vb = 3, through zero between vb = 2 and vb = 3.": [
+        curve("coulomb", [-0.1, -0.05, 0.2])
+    ],
+    # a reduced model is judged by the full answers beside it
+    "The closed form is up to 0.02 too low, at vb = 2.": ROUGH,
+    # a reduced model is judged at each setting
+    "At Ω = 1 the closed form is up to 0.2 too low (vb = 2), at Ω = 1.5 up to 0.3 too high (vb = 2).": [
+        curve("coulomb", [0.1, 0.3 + off], error=error, **{FREQUENCY: frequency, "method": method})
+        for frequency in (1.0, 1.5)
+        for method, off, error in (("mdsm", frequency - 1.2, 0.5), ("exact", 0.0, 1e-9))
+    ],
+    # a reduced model alone is told with its own error
+    "...at vb = 1 to 0.30 ± 0.05 at vb = 2; the closed form is off by at most 0.05, at vb = 1.": ROUGH[1:],
 }
 
 
 @some(8, "answers of every kind")
-@pytest.mark.parametrize("which", WHO_IS_HIGHEST_WHERE)
-def test_the_first_sentence_says_who_is_highest_where(which: str) -> None:
-    rows, wanted = WHO_IS_HIGHEST_WHERE[which]
-    first = told(*rows)[0]
+@pytest.mark.parametrize("wanted", WHO_IS_HIGHEST_WHERE)
+def test_the_first_sentence_says_who_is_highest_where(wanted: str) -> None:
+    first = told(*WHO_IS_HIGHEST_WHERE[wanted])[0]
 
-    if wanted.startswith("..."):
-        assert first.endswith(wanted.removeprefix("..."))
-    elif wanted.endswith("..."):
-        assert first.startswith(wanted.removesuffix("..."))
-    else:
-        assert first == wanted
+    assert re.fullmatch(re.sub(r"^\\\.\\\.\\\.|\\\.\\\.\\\.$", ".*", re.escape(wanted)), first)
 
 
 def test_a_run_without_a_number_says_so_three_times() -> None:
@@ -215,55 +204,57 @@ def test_a_run_whose_every_point_is_not_unique_has_no_one_mean() -> None:
 
 FREQUENCIES = [float(place) for place in range(1, 6)]
 STOPS = "Slip stops reversing at vb = 50.00 ± 0.02."
-SHAPES: dict[str, tuple[list[dict[str, Any]], str]] = {
-    "one curve is told with its end and its area": (
-        [shape("coulomb", "concave")],
-        f"The curve of Coulomb is concave (above its chord, by 0.0577 ± 0.0002 of the area under it). {STOPS}",
-    ),
-    "an end known to more than itself is not told": (
-        [shape("coulomb", "concave", reversal_end=12.0, reversal_end_error=27.0)],
+SHAPES: dict[str, list[dict[str, Any]]] = {
+    # one curve is told with its end and its area
+    f"The curve of Coulomb is concave (above its chord, by 0.0577 ± 0.0002 of the area under it). {STOPS}": [
+        shape("coulomb", "concave")
+    ],
+    # an end known to more than itself is not told
+    (
         "The curve of Coulomb is concave (above its chord, by 0.0577 ± 0.0002 of the area under it). "
-        "Where slip stops reversing is left open by errors.",
-    ),
-    "curves that are alike are told together": (
-        [shape(law, "convex") for law in ("coulomb", "dahl", "lugre")],
-        f"All 3 curves are convex (below their chords). {STOPS}",
-    ),
-    "curves that are not all are counted": (
-        [shape("coulomb", "concave"), shape("dahl", "concave"), shape("lugre", None, "no points")],
-        f"2 curves are concave (above their chords); 1 curve has no shape (no points). {STOPS}",
-    ),
-    "a few curves that differ are named": (
-        [
-            shape("coulomb", "concave", reversal_end=40.0),
-            shape("dahl", "convex"),
-            shape("lugre", None, "no points"),
-        ],
+        "Where slip stops reversing is left open by errors."
+    ): [shape("coulomb", "concave", reversal_end=12.0, reversal_end_error=27.0)],
+    # curves that are alike are told together
+    f"All 3 curves are convex (below their chords). {STOPS}": [
+        shape(law, "convex") for law in ("coulomb", "dahl", "lugre")
+    ],
+    # curves that are not all are counted
+    f"2 curves are concave (above their chords); 1 curve has no shape (no points). {STOPS}": [
+        shape("coulomb", "concave"),
+        shape("dahl", "concave"),
+        shape("lugre", None, "no points"),
+    ],
+    # a few curves that differ are named
+    (
         "The curve of Coulomb is concave (above its chord); that of dahl is convex (below its chord); "
-        "1 curve has no shape (no points). Slip stops reversing at vb from 40 to 50.",
-    ),
-    "many curves are told by what parts their shapes": (
-        [shape("coulomb", "concave", **{FREQUENCY: each}) for each in FREQUENCIES]
-        + [shape("dahl", "convex", **{FREQUENCY: each}) for each in FREQUENCIES],
-        f"Curves for Coulomb: all concave (above their chords); for dahl: all convex (below their chords). {STOPS}",
-    ),
-    "many curves whose shapes nothing parts are counted": (
-        [
-            shape("coulomb", "convex" if each == 3 else "concave", **{FREQUENCY: each})
-            for each in map(float, range(1, 9))
-        ],
-        f"Of 8 curves 7 are concave (above their chords) and 1 convex (below its chord: Ω = 3). {STOPS}",
-    ),
-    "why no curve has a shape is told by the commonest reason": (
-        [shape("coulomb", None, "3 points"), shape("dahl", None, "4 points"), shape("lugre", None, "sticks")],
-        "No curve has a shape: 3 ... 4 points; 1 curve for other reasons.",
-    ),
+        "1 curve has no shape (no points). Slip stops reversing at vb from 40 to 50."
+    ): [
+        shape("coulomb", "concave", reversal_end=40.0),
+        shape("dahl", "convex"),
+        shape("lugre", None, "no points"),
+    ],
+    # many curves are told by what parts their shapes
+    f"Curves for Coulomb: all concave (above their chords); for dahl: all convex (below their chords). {STOPS}": [
+        shape("coulomb", "concave", **{FREQUENCY: each}) for each in FREQUENCIES
+    ]
+    + [shape("dahl", "convex", **{FREQUENCY: each}) for each in FREQUENCIES],
+    # many curves whose shapes nothing parts are counted
+    f"Of 8 curves 7 are concave (above their chords) and 1 convex (below its chord: Ω = 3). {STOPS}": [
+        shape("coulomb", "convex" if each == 3 else "concave", **{FREQUENCY: each})
+        for each in map(float, range(1, 9))
+    ],
+    # why no curve has a shape is told by the commonest reason
+    "No curve has a shape: 3 ... 4 points; 1 curve for other reasons.": [
+        shape("coulomb", None, "3 points"),
+        shape("dahl", None, "4 points"),
+        shape("lugre", None, "sticks"),
+    ],
 }
 
 
-@pytest.mark.parametrize("which", SHAPES)
-def test_the_second_sentence_says_which_curves_are_concave(which: str) -> None:
-    found, wanted = SHAPES[which]
+@pytest.mark.parametrize("wanted", SHAPES)
+def test_the_second_sentence_says_which_curves_are_concave(wanted: str) -> None:
+    found = SHAPES[wanted]
     swept = pd.DataFrame(found).reindex(columns=["law", FREQUENCY]).dropna(axis="columns")
     rows = [curve(each.pop("law"), [0.1, 0.2], **each) for each in swept.to_dict("records")]
 

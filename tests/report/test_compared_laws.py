@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fig_4b import LAW, SCENE
 from pandas.testing import assert_frame_equal
 from profiles import deep
 
 import frictionlab as fl
 from frictionlab.values.notes import StudyError
 
-SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
-LAWS = {"rough": fl.Coulomb(mu=0.4), "smooth": fl.Coulomb(mu=0.2)}
+LAWS = {"rough": LAW, "smooth": fl.Coulomb(mu=0.2)}
 SPEEDS = np.linspace(1.0, 58.0, 20).tolist()
 
 
@@ -80,8 +80,8 @@ def test_a_notebook_shows_a_row_for_each_curve(compared: fl.Run) -> None:
     assert str(compared).startswith("40 points: 40 ok")
 
 
-def test_a_figure_is_handed_over_and_nothing_is_written(
-    compared: fl.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_figure_is_handed_over_and_nothing_written(
+    compared: fl.Run, tmp_path: Path, monkeypatch: Any
 ) -> None:
     monkeypatch.chdir(tmp_path)
     figure = compared.plot("differences", width="single", title=False, against="smooth")

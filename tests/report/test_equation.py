@@ -7,29 +7,17 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from fig_4b import GIVEN, over_speeds
 
 from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.study.load import parse_study
 
-LINE = {
-    "damping_ratio": 0.1,
-    "normal_load": 10,
-    "belt_speed": 5,
-    "drive": {"unbalance": 10, "frequency": 1.5},
-}
-PLANE = LINE | {
-    "transverse": {"natural_frequency": 0.5, "damping_ratio": 0.1, "load": {"amplitude": 3, "phase": 90}}
-}
-IN_SI = {
-    "dimensional": {
-        **{"mass_kg": 3, "stiffness_N_per_m": 300, "damping_N_s_per_m": 2, "length_m": 0.01},
-        **{
-            "normal_load_N": 25,
-            "belt_speed_m_per_s": 0.1,
-            "drive": {"amplitude_N": 5, "frequency_rad_per_s": 10},
-        },
-    }
-}
+LINE = GIVEN | {"drive": {"unbalance": 10, "frequency": 1.5}}
+ACROSS = {"natural_frequency": 0.5, "damping_ratio": 0.1, "load": {"amplitude": 3, "phase": 90}}
+PLANE = LINE | {"transverse": ACROSS}
+BODY = {"mass_kg": 3, "normal_load_N": 25, "belt_speed_m_per_s": 0.1}
+IN_SI = BODY | {"stiffness_N_per_m": 300, "damping_N_s_per_m": 2, "length_m": 0.01}
+IN_SI |= {"drive": {"amplitude_N": 5, "frequency_rad_per_s": 10}}
 
 
 def told(scene: dict[str, Any], **sweep: Any) -> list[str]:
@@ -39,8 +27,7 @@ def told(scene: dict[str, Any], **sweep: Any) -> list[str]:
 
 def _study(scene: dict[str, Any], **sweep: Any) -> Any:
     paths = {f"scene.{name.replace('__', '.')}": values for name, values in sweep.items()}
-    study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["auto"]}
-    return parse_study(study | {"sweep": paths})
+    return parse_study(over_speeds([], scene=scene, methods=["auto"], sweep=paths))
 
 
 def test_numbers_stand_in_the_equation_of_motion() -> None:
@@ -48,12 +35,7 @@ def test_numbers_stand_in_the_equation_of_motion() -> None:
 
 
 def test_what_is_swept_stays_a_symbol() -> None:
-    swept = {
-        "drive__frequency": [1, 2],
-        "damping_ratio": [0.1, 0.2],
-        "normal_load": [1, 2],
-        "belt_speed": [1, 2],
-    }
+    swept = {name: [1, 2] for name in ("drive__frequency", "damping_ratio", "normal_load", "belt_speed")}
 
     assert told(LINE, **swept) == ["ẍ1 + 2 β1 ẋ1 + x1 + γ2 T1 = 10 Ω2 sin(Ω τ)", "v1 = ẋ1 − vb"]
 
@@ -77,21 +59,21 @@ def test_the_plane_has_an_equation_for_each_direction() -> None:
 
 def test_a_turned_load_pushes_in_both_directions() -> None:
     drive = {"amplitude": 2, "frequency": 1, "direction": 30, "waveform": "square"}
-    first, second, _ = told(
-        PLANE | {"drive": drive} | {"transverse": {"natural_frequency": 1, "damping_ratio": 0}}
-    )
+    across = {"natural_frequency": 1, "damping_ratio": 0}
+    first, second, _ = told(PLANE | {"drive": drive, "transverse": across})
 
     assert first.endswith(" = 2 square(τ) cos 30°")
     assert second.endswith(" = 2 square(τ) sin 30°")
 
 
 def test_si_units_have_mass_and_springs_in_them() -> None:
-    assert told(IN_SI) == ["3 Ẍ1 + 2 Ẋ1 + 300 X1 + 25 T1 = 5 sin(10 t)", "v1 = Ẋ1 − 0.1"]
-    assert letters_sentence(_study(IN_SI)).endswith("forces are in N, lengths in m, t in s.")
+    scene = {"dimensional": IN_SI}
+    assert told(scene) == ["3 Ẍ1 + 2 Ẋ1 + 300 X1 + 25 T1 = 5 sin(10 t)", "v1 = Ẋ1 − 0.1"]
+    assert letters_sentence(_study(scene)).endswith("forces are in N, lengths in m, t in s.")
 
 
 def test_springs_and_vibrations_by_their_other_numbers_are_those_of_the_equation() -> None:
-    body = {"mass_kg": 3, "normal_load_N": 25, "belt_speed_m_per_s": 0.1, "damping_ratio": 0.1}
+    body = BODY | {"damping_ratio": 0.1}
     natural, stiff = {"natural_frequency_rad_per_s": 10}, {"stiffness_N_per_m": 300}
     shaken = {"belt_vibration": {"displacement_amplitude_m": 0.01, "frequency_rad_per_s": 20}}
     pushed = {"belt_vibration": {"acceleration_amplitude_m_per_s2": 4, "frequency_rad_per_s": 20}}
@@ -118,23 +100,16 @@ def test_a_normal_load_and_a_belt_that_vary_are_told() -> None:
     ]
 
 
+SLIP = {"velocity_amplitude": 2, "frequency": 1}
+SLIP_IN_SI = {"displacement_amplitude": "2 m", "frequency": "3 rad/s"}
+
+
 @pytest.mark.parametrize(
     ("scene", "wanted"),
     [
-        ({"belt_speed": 0.5, "slip": {"velocity_amplitude": 2, "frequency": 1}}, ["v1 = 2 sin(τ) − 0.5"]),
-        (
-            {"belt_speed": -0.5, "transverse_slip": {"velocity_amplitude": 2, "frequency": 1}},
-            ["v1 = 0.5", "v2 = 2 sin(τ)"],
-        ),
-        (
-            {
-                "dimensional": {
-                    "belt_speed": "1 m/s",
-                    "slip": {"displacement_amplitude": "2 m", "frequency": "3 rad/s"},
-                }
-            },
-            ["v1 = 6 sin(3 t) − 1"],
-        ),
+        ({"belt_speed": 0.5, "slip": SLIP}, ["v1 = 2 sin(τ) − 0.5"]),
+        ({"belt_speed": -0.5, "transverse_slip": SLIP}, ["v1 = 0.5", "v2 = 2 sin(τ)"]),
+        ({"dimensional": {"belt_speed": "1 m/s", "slip": SLIP_IN_SI}}, ["v1 = 6 sin(3 t) − 1"]),
     ],
 )
 def test_a_prescribed_slip_is_an_equation_of_its_own(scene: dict[str, Any], wanted: list[str]) -> None:

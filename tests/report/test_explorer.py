@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from fig_4b import COULOMB, over_speeds
 from pages import Page, complaints
 
 import frictionlab as fl
@@ -22,30 +23,15 @@ from frictionlab.report.explorer import explorer, label, page_scene, run_data
 from frictionlab.runner.files import FolderError
 from frictionlab.theory.linear import friction_free_velocity
 
-CHROMIUM = next(
-    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))),
-    None,
-)
+BROWSERS = map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))
+CHROMIUM = next(filter(None, BROWSERS), None)
 WITHOUT = "chromium is not installed: the explorer is not opened in a browser"
 OWN = {"<script>"}
 """What the page has and a report may not."""
-STUDY: dict[str, Any] = {
-    "schema": 1,
-    "title": "Two laws </script> & more",
-    "scene": {
-        "damping_ratio": 0.1,
-        "normal_load": 10,
-        "belt_speed": 5,
-        "drive": {"unbalance": 10, "frequency": 1},
-    },
-    "laws": [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.3, "label": "other"}],
-    "methods": ["exact", "mdsm"],
-    "sweep": {
-        "scene.belt_speed": {"start": 5, "stop": 55, "num": 11},
-        "scene.drive.frequency": [1, 2],
-        "laws.other.mu": [0.2, 0.3],
-    },
-}
+STUDY = over_speeds({"start": 5, "stop": 55, "num": 11}, methods=["exact", "mdsm"])
+STUDY["laws"] = [COULOMB, {"kind": "coulomb", "mu": 0.3, "label": "other"}]
+STUDY["sweep"] |= {"scene.drive.frequency": [1, 2], "laws.other.mu": [0.2, 0.3]}
+STUDY["title"] = "Two laws </script> & more"
 
 
 @pytest.fixture(scope="module")
@@ -85,12 +71,10 @@ def test_a_run_is_embedded_whole(saved: fl.Run) -> None:
 
     assert [quantity["values"] for quantity in data["swept"]] == [[1.0, 2.0], [0.2, 0.3]]
     assert data["abscissa"]["label"] == "Belt speed v_{b}"
-    points = [
-        (x, mean) for curve in data["curves"] for x, mean in zip(curve["x"], curve["mean"], strict=True)
-    ]
-    assert len(points) == len(saved.table)
-    wanted = saved.table["mean_friction"].dropna()
-    assert sorted(mean for _, mean in points if mean is not None) == sorted(wanted)
+    assert [len(curve["x"]) for curve in data["curves"]] == [len(curve["mean"]) for curve in data["curves"]]
+    means = [mean for curve in data["curves"] for mean in curve["mean"]]
+    assert len(means) == len(saved.table)
+    assert sorted(mean for mean in means if mean is not None) == sorted(saved.table["mean_friction"].dropna())
     assert [quantity["label"] for quantity in data["swept"]][1] == "Friction coefficient \u03bc of other"
     assert {curve["law"]: curve["at"][1] for curve in data["curves"]}["coulomb"] is None
 
@@ -143,7 +127,7 @@ def test_labels_are_words_with_marked_subscripts() -> None:
 
 
 def test_the_command_writes_the_page_and_says_where(
-    saved: fl.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    saved: fl.Run, tmp_path: Path, monkeypatch: Any, capsys: Any
 ) -> None:
     monkeypatch.chdir(tmp_path)
 
@@ -164,10 +148,8 @@ def test_a_page_of_somebody_else_is_not_replaced(tmp_path: Path, capsys: pytest.
 
 
 def test_a_run_without_a_sweep_is_refused_with_the_reason(saved: fl.Run) -> None:
-    alone = with_table(saved, saved.table.iloc[:1])
-
     with pytest.raises(FolderError, match="sweeps no number"):
-        explorer(alone)
+        explorer(with_table(saved, saved.table.iloc[:1]))
 
 
 DRIVER = """<!DOCTYPE html><body><pre id="told"></pre><script>
@@ -255,10 +237,8 @@ def opened(saved: fl.Run, tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def exact_state(chosen: dict[str, float]) -> fl.SteadyState:
-    drive = fl.Drive(amplitude=1.0, frequency=chosen["frequency"])
-    scene = fl.Scene(
-        damping_ratio=chosen["damping"], normal_load=chosen["friction"], belt_speed=1.0, drive=drive
-    )
+    body = {"damping_ratio": chosen["damping"], "normal_load": chosen["friction"], "belt_speed": 1.0}
+    scene = fl.Scene(**body, drive=fl.Drive(amplitude=1.0, frequency=chosen["frequency"]))
     speed = chosen["belt"] * friction_free_velocity(scene)
     return fl.steady_state(scene.with_(belt_speed=speed), fl.Coulomb(mu=1.0), method="exact")
 
@@ -302,9 +282,8 @@ def test_where_friction_holds_the_body_on_a_belt_at_rest_the_page_says_so(opened
 
 
 def test_the_sentence_names_the_shape(opened: Any) -> None:
-    assert opened["states"][0]["verdict"].startswith(
-        "Up to Vlin the curve is concave by area: it lies above its chord"
-    )
+    told = "Up to Vlin the curve is concave by area: it lies above its chord"
+    assert opened["states"][0]["verdict"].startswith(told)
 
 
 def test_the_table_of_the_run_follows_its_sliders(opened: Any, saved: fl.Run) -> None:
@@ -314,15 +293,13 @@ def test_the_table_of_the_run_follows_its_sliders(opened: Any, saved: fl.Run) ->
     for rows, frequency, speed in ((before, 1.0, speeds[5]), (after, 2.0, speeds[3])):
         table = saved.table
         here = table[(table["scene.drive.frequency"] == frequency) & (table["scene.belt_speed"] == speed)]
-        here = here[(here["law"] == "coulomb") | (here["law.mu"] == 0.2)]
-        wanted = [[row["law"], row["method"], f"{row['mean_friction']:.6f}"] for _, row in here.iterrows()]
-        by_exact = {
-            row["law.mu"]: row["mean_friction"] for _, row in here[here["method"] == "exact"].iterrows()
-        }
-        solved = [
-            [f"Coulomb, \u03bc = {mu}", "solved on this page", f"{by_exact[mu]:.6f}"] for mu in (0.4, 0.2)
-        ]
-        assert sorted(row[:3] for row in rows) == sorted([*wanted, *solved])
+        wanted = []
+        for _, row in here[(here["law"] == "coulomb") | (here["law.mu"] == 0.2)].iterrows():
+            told = f"{row['mean_friction']:.6f}"
+            wanted.append([row["law"], row["method"], told])
+            if row["method"] == "exact":
+                wanted.append([f"Coulomb, \u03bc = {row['law.mu']}", "solved on this page", told])
+        assert sorted(row[:3] for row in rows) == sorted(wanted)
     assert [state["solved"] for state in opened["states"]] == [2] * 5
 
 

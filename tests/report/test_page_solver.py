@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from fig_4b import LAW
 from profiles import deep, some
 
 import frictionlab as fl
@@ -25,15 +26,14 @@ BEGIN = f"const solver = require({json.dumps(str(page.PAGE_PARTS / 'solver.js'))
     "const sceneOf = (each) => solver.makeScene(each.frequency, each.damping, each.friction);\n"
     "const told = (value) => console.log(JSON.stringify(value));\n"
 )
-MU = 0.4
+MU = LAW.mu
 
 
 def in_node(script: str, given: Any = None) -> Any:
     """What a script tells that has the solver."""
     assert NODE is not None
-    done = subprocess.run(
-        [NODE, "-e", BEGIN + script], input=json.dumps(given), capture_output=True, text=True
-    )
+    command = [NODE, "-e", BEGIN + script]
+    done = subprocess.run(command, input=json.dumps(given), capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -63,13 +63,10 @@ def v_lin(scene: dict[str, Any]) -> float:
 
 
 def exact_curve(scene: dict[str, Any], ratios: Any) -> pd.DataFrame:
-    drive = fl.Drive(amplitude=1.0, frequency=scene["frequency"])
-    body = fl.Scene(
-        damping_ratio=scene["damping"], normal_load=scene["friction"] / MU, belt_speed=1.0, drive=drive
-    )
-    return fl.curve(
-        body, fl.Coulomb(mu=MU), belt_speed=np.array(ratios) * v_lin(scene), method="exact", columns="all"
-    )
+    body = {"damping_ratio": scene["damping"], "normal_load": scene["friction"] / MU, "belt_speed": 1.0}
+    body["drive"] = fl.Drive(amplitude=1.0, frequency=scene["frequency"])
+    speeds = np.array(ratios) * v_lin(scene)
+    return fl.curve(fl.Scene(**body), LAW, speeds, method="exact", columns="all")
 
 
 POINTS = """
@@ -110,11 +107,9 @@ def test_the_page_finds_what_exact_finds(drawn: Any, seed: int, size: int) -> No
 
 def test_without_friction_the_curve_is_the_arcsine() -> None:
     scene = {"frequency": 1.3, "damping": 0.1, "friction": 0.0}
-    found = in_node(
-        "const {speeds, means} = solver.solveCurve(sceneOf(given), 40); told([speeds, means]);", scene
-    )
+    script = "const {speeds, means} = solver.solveCurve(sceneOf(given), 40); told([speeds, means]);"
 
-    speeds, means = np.array(found)
+    speeds, means = np.array(in_node(script, scene))
     assert means == pytest.approx(2.0 / math.pi * np.arcsin(speeds), abs=1e-12)
 
 
@@ -158,19 +153,15 @@ def test_the_orbit_drawn_closes_and_obeys_the_law_of_friction() -> None:
 
     samples = pd.DataFrame(found["samples"])
     first, last = samples.iloc[0], samples.iloc[-1]
-    assert [last["t"], last["x"], last["w"]] == pytest.approx(
-        [found["period"], first["x"], first["w"]], abs=1e-12
-    )
+    wanted = [found["period"], first["x"], first["w"]]
+    assert last[["t", "x", "w"]].tolist() == pytest.approx(wanted, abs=1e-12)
     rests = samples["stick"].astype(bool)
     assert rests.any()
     assert not rests.all()
     assert (samples["w"][rests] == 0.0).all()
     assert samples["friction"][rests].abs().max() <= 1.0 + 1e-12
     assert (samples["friction"][~rests] * samples["w"][~rests] >= -1e-12).all()
-    times = samples["t"].to_numpy()
-    impulse = np.sum(
-        0.5 * (samples["friction"].to_numpy()[1:] + samples["friction"].to_numpy()[:-1]) * np.diff(times)
-    )
+    impulse = np.trapezoid(samples["friction"], samples["t"])
     assert -impulse / found["period"] == pytest.approx(found["mean"], abs=1e-4)
 
 

@@ -8,13 +8,14 @@ import json
 import re
 import shutil
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import pytest
 from fake_methods import Fake, breaks_down, faked, register
-from fig_4b import GIVEN
+from fig_4b import COULOMB, GIVEN
 from pages import Page, complaints
 from profiles import deep, some
 from run_folders import interrupted_after_one_piece, without_stamps
@@ -72,14 +73,11 @@ ODD_STUDIES: dict[str, dict[str, Any]] = {
     "markup everywhere": {
         "title": HOSTILE,
         "source": HOSTILE,
-        "laws": [{"kind": "coulomb", "mu": 0.4, "label": label} for label in (HOSTILE, "_{^")],
+        "laws": [COULOMB | {"label": label} for label in (HOSTILE, "_{^")],
         "methods": [{"kind": "fake", "label": HOSTILE}],
         "expect": [{"column": "mean_friction", "below": 1, "because": HOSTILE}],
     },
-    "other scripts": {
-        "title": "Ωμέγα, трение, 摩擦 🙂",
-        "laws": [{"kind": "coulomb", "mu": 0.4, "label": "µ 摩"}],
-    },
+    "other scripts": {"title": "Ωμέγα, трение, 摩擦 🙂", "laws": [COULOMB | {"label": "µ 摩"}]},
     "forty curves": {"sweep": {"scene.drive.frequency": [*range(1, 41)], "scene.belt_speed": [1.0, 2.0]}},
     "no point that is ok": at_speeds(13.0),
     "one point": {"sweep": {}},
@@ -124,13 +122,10 @@ def test_text_of_a_study_is_text_on_the_page(ran: Runner) -> None:
 
 
 def test_the_page_forbids_a_browser_to_run_or_fetch_anything(ran: Runner) -> None:
-    policies = [
-        element.attributes["content"]
-        for element in page_of(ran()).all("meta")
-        if element.attributes.get("http-equiv") == "Content-Security-Policy"
-    ]
+    told = [each.attributes for each in page_of(ran()).all("meta") if "http-equiv" in each.attributes]
+    allowed = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
-    assert policies == ["default-src 'none'; img-src data:; style-src 'unsafe-inline'"]
+    assert told == [{"http-equiv": "Content-Security-Policy", "content": allowed}]
 
 
 def test_what_was_asked_is_there_in_words_symbols_and_numbers(ran: Runner) -> None:
@@ -156,6 +151,9 @@ def test_what_was_asked_is_there_in_words_symbols_and_numbers(ran: Runner) -> No
 ACROSS = {"natural_frequency": 1, "damping_ratio": 1, "load": {"unbalance": 1}}
 
 
+UNDRIVEN = {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1}
+
+
 @some(1, "a run each")
 @pytest.mark.parametrize(
     ("scene", "words"),
@@ -163,10 +161,7 @@ ACROSS = {"natural_frequency": 1, "damping_ratio": 1, "load": {"unbalance": 1}}
         (GIVEN, "one degree of freedom, on a moving belt, shaken along it."),
         ({"belt_speed": 1, "slip": SLIP}, "Prescribed slip: a body whose slip"),
         (GIVEN | {"transverse": ACROSS}, "in the plane, on a moving belt, shaken along and across it."),
-        (
-            {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1},
-            "on a moving belt, which nothing shakes.",
-        ),
+        (UNDRIVEN, "on a moving belt, which nothing shakes."),
     ],
 )
 def test_the_kind_of_a_scene_is_told_in_a_sentence(scene: dict[str, Any], words: str, ran: Runner) -> None:
@@ -246,12 +241,9 @@ def test_how_it_is_known_that_a_state_is_the_only_one_is_no_trouble(ran: Runner)
     head, *rows = page.table("Whether every start ends there")
 
     assert head == ["unique", "how it is known", "points", "laws"]
+    theorem = "dashpots damp and friction never falls with speed (Leine & van de Wouw, 2008)"
     assert [row[:3] for row in rows] == [
-        [
-            "proved",
-            "dashpots damp and friction never falls with speed (Leine & van de Wouw, 2008)",
-            "1 point",
-        ],
+        ["proved", theorem, "1 point"],
         ["tested", "2 starts up to 5 apart ended here", "1 point"],
         ["no", "other starts end elsewhere", "1 point"],
     ]
@@ -327,11 +319,8 @@ def test_errors_are_given_by_curve_and_no_tolerance_is_asked_of_a_long_time_mean
 
 def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Runner) -> None:
     saved = ran(**at_speeds(1.0, 2.0, 3.0))
-    saved.table["model"] = [
-        "march, rk4: 50 steps",
-        "march, rk4: 26 steps",
-        "no reversal (auto: exact, cheapest)",
-    ]
+    models = ["march, rk4: 50 steps", "march, rk4: 26 steps", "no reversal (auto: exact, cheapest)"]
+    saved.table["model"] = models
 
     told = (
         "closed form: slip never reverses, for the belt is as fast as V_lin or faster; "
@@ -518,10 +507,9 @@ def test_a_length_that_was_left_out_is_told_as_taken(ran: Runner) -> None:
     saved = [ran(name, scene={"dimensional": body | given}, sweep={}) for name, given in LENGTHS.items()]
     told = [page_of(each).table("The scene") for each in saved]
 
-    assert ["length scale [m]", "L", "0.01, taken from the others, to scale nondimensional columns"] in told[
-        0
-    ]
-    assert ["length scale [m]", "L", "0.02"] in told[1]
+    taken = "0.01, taken from the others, to scale nondimensional columns"
+    for row, length in zip(told, (taken, "0.02"), strict=True):
+        assert ["length scale [m]", "L", length] in row
 
 
 LENGTHS: dict[str, dict[str, float]] = {"left_out": {}, "given": {"length_m": 0.02}}
@@ -600,45 +588,35 @@ def edited(folder: Path, old: str, new: str) -> None:
     study.write_text(study.read_text().replace(old, new))
 
 
+def of_files(name: str, text: str | None = None) -> Callable[[Path], None]:
+    """Write into a file, or remove it."""
+    return lambda folder: (folder / name).unlink() if text is None else (folder / name).write_text(text)
+
+
+lawless = retold(lambda table: table.drop(columns="law"))
+shorter = retold(lambda table: table.iloc[1:])
+wordy = retold(lambda table: table.assign(error="small"))
+heavier = partial(edited, old="normal_load: 10", new="normal_load: 11")
+NO_TABLE, NO_STUDY = "is not a result table:", "study.yaml is not the study of results.parquet"
+DAMAGES: dict[str, Callable[[Path], Any]] = {
+    "no such folder; RUN is a folder that 'frictionlab run STUDY -o RUN' wrote": shutil.rmtree,
+    "is not the folder of a run: no provenance.json in it; RUN is a folder that": of_files("provenance.json"),
+    "it holds runs, give one of them: ": one_folder_up,
+    "results.parquet cannot be read (": cut_short,
+    f"{NO_TABLE} it has no column law; run the study again: frictionlab run STUDY": lawless,
+    f"{NO_STUDY} (it has 6 points, the table 5": shorter,
+    f"{NO_TABLE} its column error does not hold numbers; run the study": wordy,
+    "provenance.json is not the account of a run; run the study again": of_files("provenance.json", "{"),
+    f"{NO_STUDY} (it asks for other numbers; only title": heavier,
+}
+
+
 @some(3, "a folder each")
-@pytest.mark.parametrize(
-    ("damage", "message"),
-    [
-        (shutil.rmtree, "no such folder; RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"),
-        (
-            lambda folder: (folder / "provenance.json").unlink(),
-            "is not the folder of a run: no provenance.json in it; RUN is a folder that",
-        ),
-        (one_folder_up, "it holds runs, give one of them: "),
-        (cut_short, "results.parquet cannot be read ("),
-        (
-            retold(lambda table: table.drop(columns="law")),
-            "is not a result table: it has no column law; run the study again: frictionlab run STUDY",
-        ),
-        (
-            retold(lambda table: table.iloc[1:]),
-            "study.yaml is not the study of results.parquet (it has 6 points, the table 5",
-        ),
-        (
-            retold(lambda table: table.assign(error="small")),
-            "is not a result table: its column error does not hold numbers; run the study",
-        ),
-        (
-            lambda folder: (folder / "provenance.json").write_text("{"),
-            "provenance.json is not the account of a run; run the study again",
-        ),
-        (
-            lambda folder: edited(folder, "normal_load: 10", "normal_load: 11"),
-            "study.yaml is not the study of results.parquet (it asks for other numbers; only title",
-        ),
-    ],
-)
-def test_what_is_no_run_or_a_damaged_one_is_told_in_one_message(
-    damage: Callable[[Path], Any], message: str, ran: Runner
-) -> None:
+@pytest.mark.parametrize("message", DAMAGES)
+def test_what_is_no_run_or_a_damaged_one_is_told_in_one_message(message: str, ran: Runner) -> None:
     folder = ran().folder
     without_stamps(folder)
-    damage(folder)
+    DAMAGES[message](folder)
     with pytest.raises(FolderError) as raised:
         fl.load(folder)
 

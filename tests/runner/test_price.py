@@ -36,7 +36,7 @@ STUDY = faked({"start": 1, "stop": 10, "num": 30}, methods=["fake", "slow"])
 
 
 @pytest.fixture(autouse=True)
-def known(monkeypatch: pytest.MonkeyPatch) -> None:
+def _known(monkeypatch: pytest.MonkeyPatch) -> None:
     register(monkeypatch, fake=Fake, slow=Slow, unknown=Unknown)
 
 

@@ -16,6 +16,7 @@ from types import ModuleType, SimpleNamespace
 from typing import Any, TextIO
 
 import pytest
+from fig_4b import LAW, SCENE
 from tqdm.std import tqdm
 from tqdm.utils import disp_len
 
@@ -135,9 +136,8 @@ def test_python_calls_tell_progress_where_it_is_seen_or_asked_for(capsys: Any, m
             said += capsys.readouterr().err
     told: list[int] = []
     monkeypatch.setattr(Meter, "__call__", lambda _, done, *more: told.append(done))
-    scene = fl.Scene(slip=fl.Slip(velocity_amplitude=2, frequency=1), belt_speed=1)
     for progress, last in ((None, []), (False, []), (True, [2])):
-        fl.curve(scene, fl.Coulomb(mu=0.4), [5, 25], progress=progress)
+        fl.curve(SCENE, LAW, [5, 25], progress=progress)
         assert told[-1:] == last
 
 

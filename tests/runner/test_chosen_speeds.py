@@ -57,11 +57,13 @@ def chosen_of(curve: Callable[[Floats], Floats], speeds: Floats, *how: Any) -> F
         (lambda v: 0.4 - 0.3 * np.exp(-((v - 20.0) ** 2)), np.nan, 6.0, 1.0),
     ],
 )
-def test_chords_come_within_what_is_asked_with_few_points(  # or three times that at a kink that nobody foresaw
-    curve: Callable[[Floats], Floats], kink: float, most: float, off: float, within: float
+def test_chords_come_near_with_few_points(
+    curve: Any, kink: float, most: float, off: float, within: float
 ) -> None:
+    """Within what is asked, or three times that at a kink that nobody foresaw."""
     first = np.union1d(np.linspace(0.5, 60.0, 17), [kink] if kink == kink else [])
     speeds = chosen_of(curve, first, np.array([kink]), within, 1e-5)
+
     dense = np.linspace(0.5, 60.0, 100_001)
     assert np.abs(np.interp(dense, speeds, curve(speeds)) - curve(dense)).max() < off * within
     assert len(speeds) < 20 + most * 0.4 / np.sqrt(within)
@@ -198,21 +200,16 @@ def test_a_part_cannot_know_them(tmp_path: Path) -> None:
         run_share(parse_study(STUDY), (1, 2), Store(tmp_path))
 
 
+UP = {"start": 1, "stop": 2}
+
+
 @pytest.mark.parametrize(
     ("speeds", "loads", "said"),
     [
         ({"start": 2, "stop": 1}, {}, "belt_speed.stop: must be > start = 2"),
         ({"stop": 1}, {}, "belt_speed.start: required key is missing"),
-        (
-            {"start": 1, "stop": 2},
-            [1, 2],
-            "within: belt speeds alone are chosen so, where no others are linked",
-        ),
-        (
-            {"start": 1, "stop": 2},
-            {"start": 1, "stop": 2, "num": 4000},
-            "chosen for 100000 at most: give num",
-        ),
+        (UP, [1, 2], "within: belt speeds alone are chosen so, where no others are linked"),
+        (UP, UP | {"num": 4000}, "chosen for 100000 at most: give num"),
     ],
 )
 def test_mistakes_are_told(speeds: dict[str, Any], loads: Any, said: str) -> None:

@@ -20,15 +20,10 @@ from frictionlab.study.written import yaml_text
 from frictionlab.values.columns import ATTRACTORS, OF_STATES
 
 LAW = {"kind": "stribeck", "mu_static": 0.4, "mu_kinetic": 0.2, "stribeck_speed": 1, "stribeck_exponent": 1}
-LIGHT = {
-    "damping_ratio": 0.01,
-    "normal_load": 10,
-    "belt_speed": 0.4,
-    "drive": {"unbalance": 0.2, "frequency": 1.3},
-}
-STUDY = over_speeds(
-    [0.5, 0.4, 0.45], scene=LIGHT, laws=[LAW], methods=["auto", {"kind": "march", "steps": 64}]
-)
+LIGHT: dict[str, Any] = {"damping_ratio": 0.01, "normal_load": 10, "belt_speed": 0.4}
+LIGHT |= {"drive": {"unbalance": 0.2, "frequency": 1.3}}
+BOTH = ["auto", {"kind": "march", "steps": 64}]
+STUDY = over_speeds([0.5, 0.4, 0.45], scene=LIGHT, laws=[LAW], methods=BOTH)
 STUDY |= {"keep": {"attractors": 2}}
 
 HELD = LIGHT | {"normal_load": 1, "drive": {"amplitude": 0.05, "frequency": 3}}

@@ -87,7 +87,7 @@ class Sent:
 
 @pytest.mark.parametrize("slow_first", [True, False])
 def test_the_time_left_is_within_a_factor_of_three_from_a_tenth_on(
-    slow_first: bool, monkeypatch: pytest.MonkeyPatch
+    slow_first: bool, monkeypatch: Any
 ) -> None:
     """Of two workers with pieces of two kinds, each slowest at first."""
     now, running = [0.0], dict[int, UnderWay]()

@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 831,
     "tools": 19,
     "values": 1392,
-    "tests": 26879,
+    "tests": 26398,
     "plugins": 3228,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -24,7 +24,7 @@ from frictionlab.methods.exact import method  # noqa: F401  # the same
 from frictionlab.report.page import write_report  # noqa: F401  # the same
 from frictionlab.runner import api  # noqa: F401  # the same
 from frictionlab.runner.files import FolderError
-from frictionlab.runner.saved import load as read_saved
+from frictionlab.runner.saved import read_run as read_saved
 
 STUDY = """schema: 1
 title: A sweep that is killed

@@ -17,7 +17,7 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.runner.saved import load as read_saved
+from frictionlab.runner.saved import read_run as read_saved
 from frictionlab.study.load import load_study
 
 PAGE = (Path(__file__).parents[1] / "docs" / "write_a_law.md").read_text()

@@ -25,9 +25,9 @@ def explore_command(run: Path | None, file: Path) -> None:
     RUN, a folder that ``run`` wrote, puts its table on the page, too: sliders over what it swept, every law.
     """
     from frictionlab.report.explorer import write_explorer
-    from frictionlab.runner.saved import load
+    from frictionlab.runner.saved import read_run
 
-    saved = None if run is None else load(run)
+    saved = None if run is None else read_run(run)
     for line in () if saved is None else saved.damaged:
         print_message(line)
     print_result(str(write_explorer(file, saved)))

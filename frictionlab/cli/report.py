@@ -44,10 +44,10 @@ def drawn_anew(run: Path, figures: bool) -> None:
     """The figures of a run, and its report unless they alone are asked for."""
     from frictionlab.report.run import figure_data
     from frictionlab.runner.files import alone_in
-    from frictionlab.runner.saved import load
+    from frictionlab.runner.saved import read_run
 
     with alone_in(run, make=False):
-        saved = load(run)
+        saved = read_run(run)
         for line in saved.damaged:
             print_message(line)
         data = figure_data(saved)

@@ -193,7 +193,7 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Results:
             meter.begins("solving", "points")
             check_limit(job.study, force)
             ways = study_run.RunWays(asked.changes, asked.existing, force, meter, asked.csv)
-            result = api.run(job.study, job.out, store, ways)
+            result = api.solve_study(job.study, job.out, store, ways)
     except study_run.Interrupted as problem:
         raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
     except study_run.UnsavedError as problem:

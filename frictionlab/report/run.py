@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from frictionlab.report.preview import preview_html
-from frictionlab.runner.api import run as run_study
+from frictionlab.runner.api import solve_study
 from frictionlab.runner.arguments import (
     Existing,
     check_limit,
@@ -25,8 +25,7 @@ from frictionlab.runner.arguments import (
 from frictionlab.runner.pairs import with_friction
 from frictionlab.runner.progress import ProgressAsked, progress_told
 from frictionlab.runner.results import Results
-from frictionlab.runner.saved import load as load_folder
-from frictionlab.runner.saved import save_run
+from frictionlab.runner.saved import read_run, save_run
 from frictionlab.runner.store import USUAL_GIGABYTES, store_of
 from frictionlab.runner.study_run import Interrupted, RunWays, UnsavedError
 from frictionlab.runner.summary import summary
@@ -360,7 +359,9 @@ def run(
     store = store_of(out, cache, cache_gigabytes)
     with progress_told(progress) as tell:
         try:
-            return Run.of(run_study(ready, out, store, RunWays(overrides, existing, executor, tell, as_csv)))
+            return Run.of(
+                solve_study(ready, out, store, RunWays(overrides, existing, executor, tell, as_csv))
+            )
         except (Interrupted, UnsavedError) as problem:
             problem.run = Run.of(problem.run)
             raise
@@ -393,7 +394,7 @@ def load(folder: str | PathLike[str]) -> Run:
     >>> fl.load(fl.compare(scene, fl.Coulomb(mu=0.4)).save("one")).counts
     {'ok': 1}
     """
-    return Run.of(load_folder(Path(folder)))
+    return Run.of(read_run(Path(folder)))
 
 
 def compare(

@@ -41,7 +41,7 @@ from frictionlab.values.columns import selected
 from frictionlab.values.quantities import at_least_one
 
 
-def run(study: Study, out: FolderName | None, store: Store, ways: RunWays) -> Results:
+def solve_study(study: Study, out: FolderName | None, store: Store, ways: RunWays) -> Results:
     """Solve every case of a study. Raises what ``fl.run`` raises."""
     if out is None:
         return StudyRun(study, None, store, ways).run()

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner.packing import numbers_of
-from frictionlab.runner.pieces import Block, Piece
+from frictionlab.runner.pieces import Piece, TableBlock
 from frictionlab.runner.solving import Solving
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import CLOSEST, MOST_CHOSEN, WITHIN, SpeedRange
@@ -139,7 +139,7 @@ def _in_one(rounds: Sequence[Solving], study: Study) -> Solving:
             )
         pieces += [replace(piece, rows=rows[piece.rows]) for block in one.blocks for piece in block.pieces]
     last = rounds[-1]
-    found = Solving(curves, last.task, last.store, last.keys, [Block(range(len(curves)), pieces)])
+    found = Solving(curves, last.task, last.store, last.keys, [TableBlock(range(len(curves)), pieces)])
     found.rest = last.rest
     return found
 

@@ -83,14 +83,14 @@ class Solved(NamedTuple):
 
 def solve_each(chunks: Sequence[Chunk], given_up: threading.Event = GIVE_UP) -> Solved:
     """Answer every point of the chunks of a piece. Raises BrokenPlugin, CancelledError."""
-    from frictionlab.runner.packing import packed  # brings arrow: one number does without
+    from frictionlab.runner.packing import packed_answers  # brings arrow: one number does without
 
     found = list[tuple[Part, float]]()
     if len(chunks) > 1:
         with suppress(OverLimit):
             found = within(sum(map(_allowed, chunks)), lambda: [*map(solve_timed, chunks)], given_up=given_up)
     found = found or [solve_within(chunk, given_up) for chunk in chunks]
-    return Solved(packed([part for part, _ in found]), sum(seconds for _, seconds in found))
+    return Solved(packed_answers([part for part, _ in found]), sum(seconds for _, seconds in found))
 
 
 def solve_within(chunk: Chunk, given_up: threading.Event = GIVE_UP) -> tuple[Part, float]:
@@ -144,7 +144,7 @@ MOST_RENEWALS = 20
 
 SentPiece = tuple[Piece, list[Chunk]]
 """A piece and what methods are given of it."""
-Solve = Callable[[Sequence[Chunk]], Solved]
+SolveChunks = Callable[[Sequence[Chunk]], Solved]
 Take = Callable[[Piece, Solved], None]
 Renew = Callable[[], Executor]
 
@@ -155,7 +155,7 @@ class Sent:
     solve: what workers do. renew: makes an executor in place of one that a lost worker broke.
     """
 
-    def __init__(self, executor: Executor, solve: Solve, renew: Renew | None = None) -> None:
+    def __init__(self, executor: Executor, solve: SolveChunks, renew: Renew | None = None) -> None:
         self._executor, self._solve, self._renew = executor, solve, renew
         self._done: SimpleQueue[Future[Solved]] = SimpleQueue()
         self._tries: dict[int, int] = {}

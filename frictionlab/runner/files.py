@@ -46,7 +46,7 @@ _TEMPORARY = re.compile(
 )
 
 
-def begun(path: Path, process: int) -> Path:
+def unfinished(path: Path, process: int) -> Path:
     """Return the place of a file while this thread of a process writes it."""
     return path.with_name(f".{path.name}.{platform.node()}.{threading.get_ident()}.{process}")
 
@@ -57,7 +57,7 @@ def written_whole(path: Path) -> Iterator[Any]:
 
     Raises SaveError.
     """
-    temporary = begun(path, os.getpid())
+    temporary = unfinished(path, os.getpid())
     try:
         with temporary.open("wb") as file:
             yield file

@@ -30,7 +30,7 @@ from frictionlab.values.printable import printable
 PAGE_MARK = '<meta name="generator" content="frictionlab'
 MOST_DIFFERENCES = 2
 """Lines shown of each of two studies that differ."""
-SHOWN = 72
+LETTERS_SHOWN = 72
 """Letters shown of such a line."""
 SOLVER, ASKED = "solver", "asked"
 """Where an account holds the digest of the code that found the numbers, and of what was asked for beside them."""
@@ -234,14 +234,14 @@ REMEDY = "choose another folder with -o, or replace what is there with --force"
 
 def _brief(line: str, others: Sequence[str]) -> str:
     """Of a long line the part, from a word on, in which it leaves the line most like it."""
-    if len(line.strip()) <= SHOWN:
+    if len(line.strip()) <= LETTERS_SHOWN:
         return line.strip()
     differs = _equal(line, others)
-    start = line.rfind(" ", 0, max(0, differs - SHOWN // 2)) + 1
+    start = line.rfind(" ", 0, max(0, differs - LETTERS_SHOWN // 2)) + 1
     if line[:start].endswith(": "):  # a value without its key is unclear
         start = line.rfind(" ", 0, start - 1) + 1
     begins = f"{line.split(':')[0].strip()}: ... " if line[:start].strip() else ""
-    stop = max(start + SHOWN, differs + SHOWN // 4)
+    stop = max(start + LETTERS_SHOWN, differs + LETTERS_SHOWN // 4)
     return f"{begins}{line[start:stop].strip()}{' ...' if len(line) > stop else ''}"
 
 

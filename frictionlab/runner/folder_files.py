@@ -56,7 +56,7 @@ def _version(name: str) -> str | None:
         return None
 
 
-ACCOUNT = {"expect": [], "runs": [], "packages": {}, "code": {}, "files": {}, "counts": {}, "table": ""}
+EMPTY_ACCOUNT = {"expect": [], "runs": [], "packages": {}, "code": {}, "files": {}, "counts": {}, "table": ""}
 """What every provenance.json has."""
 
 
@@ -76,7 +76,7 @@ class FolderFiles:
     def account(self) -> dict[str, Any]:
         """Return what provenance.json says. Raises FolderError where it is not the account of a run."""
         try:
-            whole = ACCOUNT | json.loads(self.account_file.read_text(encoding="utf-8"))
+            whole = EMPTY_ACCOUNT | json.loads(self.account_file.read_text(encoding="utf-8"))
             sound = (
                 all(isinstance(each["sentence"], str) and "passed" in each for each in whole["expect"])
                 and all(isinstance(run["seconds"], float | int) for run in whole["runs"])

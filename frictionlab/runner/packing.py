@@ -18,7 +18,7 @@ IN_LISTS = "."
 """Between the name of what is kept and that of its column: ``orbits.x``, a list of numbers in each row."""
 
 
-def packed(parts: Sequence[Part]) -> pa.Table:
+def packed_answers(parts: Sequence[Part]) -> pa.Table:
     """Return the answers of chunks, one after another, as a table; columns in which nothing is are left out."""
     return _packed(parts[0] if len(parts) == 1 else _in_a_row(parts))
 
@@ -42,7 +42,7 @@ def _in_a_row(parts: Sequence[Part]) -> Part:
     return Part(text, numbers, kept)
 
 
-def joined(tables: Sequence[pa.Table]) -> pa.Table:
+def rows_joined(tables: Sequence[pa.Table]) -> pa.Table:
     """Return the rows of tables as one; a row is empty where its table has no such column."""
     return pa.concat_tables(tables, promote_options="default") if len(tables) > 1 else tables[0]
 

@@ -26,7 +26,7 @@ friction, and of all others, whose points may take seconds each.
 
 Fewer lose the continuation from the neighbour, more leave workers idle. Never made to depend on the number of
 workers: answers would, too."""
-SLOWEST = 4, 12
+SLOW_END = 4, 12
 """Places where the slow end of such a curve is cut first, at the lowest belt speeds: the longest of five pieces of
 the hardest case known takes 20 s then, that of four equal ones 28 s, at the same cost in all."""
 LONG_STUDY, TOGETHER = 20_000, 500
@@ -114,17 +114,17 @@ class Piece:
         return [cut.chunk(self.task) for cut in self.cuts]
 
 
-class Block(NamedTuple):
+class TableBlock(NamedTuple):
     """Curves, one after another, whose rows together are neighbours in the table, and their pieces."""
 
     curves: range
     pieces: list[Piece]
 
 
-def blocks_of(curves: Sequence[StudyCurve], task: Task) -> list[Block]:
+def blocks_of_table(curves: Sequence[StudyCurve], task: Task) -> list[TableBlock]:
     """Return all pieces of the curves of a study, by the blocks of its table."""
     long = is_long(curves)
-    return [Block(own, [*_pieces(curves[own.start : own.stop], task, long)]) for own in _blocks(curves)]
+    return [TableBlock(own, [*_pieces(curves[own.start : own.stop], task, long)]) for own in _blocks(curves)]
 
 
 def _blocks(curves: Sequence[StudyCurve]) -> Iterator[range]:
@@ -166,7 +166,7 @@ def cuts(curves: Iterable[StudyCurve], long: bool) -> Iterator[Cut]:
         rows = np.arange(curve.rows.start, curve.rows.stop, curve.rows.step)
         quick = curve.given_law.memory_kind == "none" and not curve.scenes.scene.undriven
         size, points = (QUICK if quick else SLOW)[long], len(rising)
-        first = [0, *SLOWEST][: 0 if quick or long or points < 2 * size else None]
+        first = [0, *SLOW_END][: 0 if quick or long or points < 2 * size else None]
         left = points - (first[-1] if first else 0)
         count = max(1, round(left / size))
         ends = [*first[:-1], *(points - left + left * piece // count for piece in range(count + 1))]

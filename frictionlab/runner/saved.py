@@ -45,7 +45,7 @@ MOST_NAMED = 3
 """Runs named to somebody who gave the folder around them."""
 
 
-def load(folder: Path) -> Results:
+def read_run(folder: Path) -> Results:
     """Return the run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
     _check_is_a_run(folder)
     files = FolderFiles(folder)

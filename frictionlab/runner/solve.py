@@ -36,10 +36,10 @@ from frictionlab.values.quantities import Floats
 
 def solve(chunk: Chunk) -> Part:
     """Answer every point of a chunk. Raises BrokenPlugin; all else becomes the reason of a failed point."""
-    return columns_of(chunk, answer(chunk))
+    return columns_answered(chunk, answer(chunk))
 
 
-def columns_of(chunk: Chunk, answered: Sequence[Answered]) -> Part:
+def columns_answered(chunk: Chunk, answered: Sequence[Answered]) -> Part:
     """Return what was answered, all points of a chunk, as columns."""
     return one_part([part for each in answered for part in _parts(chunk, each)], len(chunk))
 

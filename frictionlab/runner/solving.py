@@ -10,8 +10,8 @@ import numpy as np
 import pyarrow as pa
 
 from frictionlab.runner.engine import Solved, solve_each
-from frictionlab.runner.packing import IN_LISTS, joined
-from frictionlab.runner.pieces import Block, Chunk, Piece, Task, blocks_of, task_of
+from frictionlab.runner.packing import IN_LISTS, rows_joined
+from frictionlab.runner.pieces import Chunk, Piece, TableBlock, Task, blocks_of_table, task_of
 from frictionlab.runner.price import Forecast
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.store import Keys, Store
@@ -36,10 +36,10 @@ class Solving:
         task: Task,
         store: Store | None = None,
         keys: Keys | None = None,
-        blocks: Sequence[Block] | None = None,
+        blocks: Sequence[TableBlock] | None = None,
     ) -> None:
         self.curves, self.task, self.store = curves, task, store or Store()
-        self.blocks = blocks_of(curves, task) if blocks is None else blocks
+        self.blocks = blocks_of_table(curves, task) if blocks is None else blocks
         self.computed = self.found = 0
         self.rest = ""
         self.keys = keys or Keys({})
@@ -121,13 +121,13 @@ class Solving:
         start = f"{kind}{IN_LISTS}"
         return [name.removeprefix(start) for name in self.columns() if name.startswith(start)]
 
-    def answers(self, block: Block | None = None) -> pa.Table:
+    def answers(self, block: TableBlock | None = None) -> pa.Table:
         """Return the answers of a block, or of all, in the order of the rows; those that are missing are ``killed``.
 
         A piece that is damaged, or that somebody has removed from the store since, is solved now.
         """
         pieces = block.pieces if block else [piece for each in self.blocks for piece in each.pieces]
-        found = joined([self._answer(piece) for piece in pieces])
+        found = rows_joined([self._answer(piece) for piece in pieces])
         order = np.argsort(np.concatenate([piece.rows for piece in pieces]))
         return found.unify_dictionaries().combine_chunks().take(pa.array(order))
 

@@ -13,7 +13,7 @@ from frictionlab.runner.arguments import given_law, given_method, given_scene, g
 from frictionlab.runner.engine import within
 from frictionlab.runner.part import Part, si_columns, si_scales
 from frictionlab.runner.pieces import Chunk, Task
-from frictionlab.runner.solve import answer, columns_of, solve
+from frictionlab.runner.solve import answer, columns_answered, solve
 from frictionlab.runner.state import OrbitOf, SteadyState
 from frictionlab.runner.words import in_si_words
 from frictionlab.scene.scene import Scene
@@ -66,7 +66,7 @@ def steady_state(
     task = Task(given_tolerance(tolerance), columns=selected([ALL]))
     chunk = Chunk(Scenes.of([scene]), law_in_scene(law, scene), ready, task)
     (found,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
-    part = within(inf, columns_of, chunk, [found])
+    part = within(inf, columns_answered, chunk, [found])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     scales = {} if scene.dimensional is None else si_scales(scene)
     words = {name: in_si_words(column[0], scales) for name, column in part.text.items()}

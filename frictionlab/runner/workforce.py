@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from frictionlab.runner.engine import Renew, Sent, SentPiece, Solve, Take, solve_each
+from frictionlab.runner.engine import Renew, Sent, SentPiece, SolveChunks, Take, solve_each
 from frictionlab.runner.files import NoScheduler
 from frictionlab.runner.pieces import Chunk
 
@@ -31,7 +31,7 @@ class Workforce:
     executor: Executor
     renew: Renew | None = None
     elsewhere: bool = True
-    solve_each: Solve = solve_each
+    solve_each: SolveChunks = solve_each
 
     def solve(self, pieces: Iterable[SentPiece], take: Take, tick: Callable[[], None]) -> None:
         """Solve pieces, as ``Sent.collect`` does.

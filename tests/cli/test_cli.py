@@ -472,7 +472,7 @@ def test_figures_that_cannot_be_written_are_code_3_with_the_table_safe(frictionl
 
 
 def test_a_bug_of_ours_is_code_1_with_a_traceback_and_a_plea(frictionlab: Any, monkeypatch: Any) -> None:
-    monkeypatch.setattr(api, "run", lambda *_: 1 / 0)
+    monkeypatch.setattr(api, "solve_study", lambda *_: 1 / 0)
     said = frictionlab("run", study())
 
     assert said.code == 1

@@ -25,8 +25,8 @@ from profiles import deep, some
 import frictionlab as fl
 from frictionlab.runner import files, folder, study_run
 from frictionlab.runner.files import FolderError, SaveError
-from frictionlab.runner.packing import kept_of, packed
-from frictionlab.runner.pieces import Task, blocks_of, cuts, is_long
+from frictionlab.runner.packing import kept_of, packed_answers
+from frictionlab.runner.pieces import Task, blocks_of_table, cuts, is_long
 from frictionlab.runner.solve import solve
 from frictionlab.runner.summary import summary
 from frictionlab.runner.table import inputs, records
@@ -166,7 +166,7 @@ def test_friction_is_told_against_the_load_there_is(scene: Any, of_drive: float,
 
 def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
     curves = list(parse_study(study(sweep=MANY)).curves())
-    (block,) = blocks_of(curves, Task(1e-8))
+    (block,) = blocks_of_table(curves, Task(1e-8))
 
     assert sorted(row for piece in block.pieces for row in piece.rows) == list(range(800))
     assert all(64 <= len(piece) <= 250 for piece in block.pieces)
@@ -180,7 +180,7 @@ def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
 
 def test_short_curves_of_a_long_study_are_solved_and_kept_together() -> None:
     sweep = {"scene.normal_load": {"start": 1, "stop": 9, "num": 3000}, "scene.belt_speed": [*range(1, 8)]}
-    blocks = blocks_of(list(parse_study(study(sweep=sweep)).curves()), Task(1e-8))
+    blocks = blocks_of_table(list(parse_study(study(sweep=sweep)).curves()), Task(1e-8))
     rows = [np.concatenate([piece.rows for piece in block.pieces]) for block in blocks]
 
     assert sorted(np.concatenate(rows).tolist()) == list(range(21000))
@@ -212,8 +212,8 @@ def test_rows_do_not_depend_on_the_number_of_workers() -> None:
 
 def test_chunks_and_answers_can_cross_to_another_process() -> None:
     curves = list(parse_study(study(keep={"orbit": 4})).curves())
-    (chunk,) = blocks_of(curves, Task(1e-8, 4))[0].pieces[0].chunks()
-    answers = pickle.loads(pickle.dumps(packed([solve(pickle.loads(pickle.dumps(chunk)))])))
+    (chunk,) = blocks_of_table(curves, Task(1e-8, 4))[0].pieces[0].chunks()
+    answers = pickle.loads(pickle.dumps(packed_answers([solve(pickle.loads(pickle.dumps(chunk)))])))
 
     assert len(answers) == 6
     assert kept_of(answers, "orbits").groupby("row").size().tolist() == [4] * 4

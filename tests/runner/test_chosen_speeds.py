@@ -17,7 +17,7 @@ import frictionlab as fl
 from frictionlab.runner import study_run
 from frictionlab.runner.batch import plan
 from frictionlab.runner.chosen_speeds import halves_to_add
-from frictionlab.runner.saved import load as read_saved
+from frictionlab.runner.saved import read_run as read_saved
 from frictionlab.runner.solving import Solving, run_share
 from frictionlab.runner.store import Store
 from frictionlab.study.load import load_study, parse_study

@@ -23,9 +23,9 @@ from profiles import deep
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts import figures
-from frictionlab.runner.files import FolderError, begun, remove_leftovers
+from frictionlab.runner.files import FolderError, remove_leftovers, unfinished
 from frictionlab.runner.folder import run_folder
-from frictionlab.runner.saved import load as read_saved
+from frictionlab.runner.saved import read_run as read_saved
 from frictionlab.study.load import load_study
 from frictionlab.study.written import yaml_text
 from frictionlab.values.printable import printable
@@ -176,15 +176,17 @@ def test_leftovers_of_killed_runs_are_removed_and_those_of_running_ones_stay(tmp
     process.wait()
     for folder in (Path("out"), Path("out/laws")):
         folder.mkdir()
-        stays = {folder / ".mine", begun(folder / "results.csv", os.getppid())}
-        goes = {begun(folder / name, process.pid) for name in ("results.parquet", "report.html", "steady.py")}
+        stays = {folder / ".mine", unfinished(folder / "results.csv", os.getppid())}
+        goes = {
+            unfinished(folder / name, process.pid) for name in ("results.parquet", "report.html", "steady.py")
+        }
         for path in stays | goes:
             path.write_text("")
 
     fl.run("mine.yaml", out="out")
 
     assert {path.name for path in Path("out").rglob(".*")} == {path.name for path in stays}
-    begun(tmp_path / "index.html", os.getpid()).write_text("")
+    unfinished(tmp_path / "index.html", os.getpid()).write_text("")
     remove_leftovers(tmp_path)
     assert not list(tmp_path.glob(".index*"))
 

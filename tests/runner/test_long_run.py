@@ -23,7 +23,7 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.runner import gathering as thinned
 from frictionlab.runner import pieces, saved, study_run
-from frictionlab.runner.saved import load as read_saved
+from frictionlab.runner.saved import read_run as read_saved
 from frictionlab.study.load import parse_study
 from frictionlab.study.written import yaml_text
 

@@ -22,7 +22,7 @@ import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner import store as code_digest
 from frictionlab.runner.engine import solve_each
-from frictionlab.runner.files import begun
+from frictionlab.runner.files import unfinished
 from frictionlab.runner.packing import kept_of
 from frictionlab.runner.pieces import Cut, Piece, Task
 from frictionlab.runner.store import Keys, Store
@@ -220,7 +220,7 @@ def test_those_used_longest_ago_are_removed_above_the_limit(tmp_path: Path) -> N
 
 def test_what_a_killed_process_began_to_keep_is_removed(tmp_path: Path) -> None:
     store, path = kept_one(tmp_path)
-    begun(path, 999999999).write_bytes(b"half")
+    unfinished(path, 999999999).write_bytes(b"half")
     store.trim()
 
     assert list(path.parent.iterdir()) == [path]

@@ -16,7 +16,7 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.report.page import write_report
 from frictionlab.runner.files import FolderError
-from frictionlab.runner.saved import load as read_saved
+from frictionlab.runner.saved import read_run as read_saved
 from frictionlab.study import registry
 from frictionlab.study.load import load_study, read_back
 from frictionlab.study.registry import read_law_file

@@ -12,7 +12,7 @@ import pytest
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
 from frictionlab.report.question import scene_sentences
-from frictionlab.runner.pieces import blocks_of, task_of
+from frictionlab.runner.pieces import blocks_of_table, task_of
 from frictionlab.runner.store import Keys
 from frictionlab.runner.table import inputs
 from frictionlab.scene.waveforms import Form, Term
@@ -92,7 +92,7 @@ CHANGES = [
 def test_each_change_of_a_word_gives_another_digest_and_another_key_of_its_chunks() -> None:
     plans = [parse_study(study({}, scene=SCENE | change)) for change in [{}, *CHANGES]]
     keys = Keys({})
-    blocks = [blocks_of(list(plan.curves()), task_of(plan)) for plan in plans]
+    blocks = [blocks_of_table(list(plan.curves()), task_of(plan)) for plan in plans]
     found = [keys.of(piece) for (block,) in blocks for piece in block.pieces]
 
     assert not any(key.startswith("?") for key in found)

@@ -180,7 +180,6 @@ def run_command(**given: Any) -> int:
 def _run(job: Job, asked: RunOptions, meter: Meter) -> Results:
     """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
     from frictionlab.runner import api, study_run
-    from frictionlab.runner.arguments import check_limit
     from frictionlab.runner.folder import run_folder
     from frictionlab.runner.store import store_of
 
@@ -191,7 +190,6 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Results:
         meter.begins("starting")
         with _force(asked) as force:
             meter.begins("solving", "points")
-            check_limit(job.study, force)
             ways = study_run.RunWays(asked.changes, asked.existing, force, meter, asked.csv)
             result = api.solve_study(job.study, job.out, store, ways)
     except study_run.Interrupted as problem:

@@ -16,7 +16,6 @@ from frictionlab.report.preview import preview_html
 from frictionlab.runner.api import solve_study
 from frictionlab.runner.arguments import (
     Existing,
-    check_limit,
     check_ways,
     given_scene,
     given_speeds,
@@ -355,7 +354,6 @@ def run(
     """
     check_ways(existing, executor)
     ready = given_study(study, overrides, columns)
-    check_limit(ready, executor)
     store = store_of(out, cache, cache_gigabytes)
     with progress_told(progress) as tell:
         try:

@@ -14,6 +14,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.runner.arguments import (
     check_executor,
+    check_limit,
     given_columns,
     given_law,
     given_method,
@@ -43,6 +44,7 @@ from frictionlab.values.quantities import at_least_one
 
 def solve_study(study: Study, out: FolderName | None, store: Store, ways: RunWays) -> Results:
     """Solve every case of a study. Raises what ``fl.run`` raises."""
+    check_limit(study, ways.executor)
     if out is None:
         return StudyRun(study, None, store, ways).run()
     folder = run_folder(study, Path(out))

@@ -9,6 +9,7 @@ from concurrent.futures import BrokenExecutor, Executor
 import numpy as np
 import pyarrow as pa
 
+from frictionlab.runner.arguments import check_limit
 from frictionlab.runner.engine import Solved, solve_each
 from frictionlab.runner.packing import IN_LISTS, rows_joined
 from frictionlab.runner.pieces import Chunk, Piece, TableBlock, Task, blocks_of_table, task_of
@@ -159,8 +160,9 @@ def run_share(
 
     Which pieces those are hangs on the study alone. Points that fail by a defect are not kept: the run that gathers
     all parts tries them again. Raises BrokenPlugin, SaveError, BrokenExecutor, KeyboardInterrupt; what was solved by
-    then is kept. Raises StudyError where belt speeds are chosen as a run goes.
+    then is kept. Raises StudyError where belt speeds are chosen as a run goes, or threads cannot keep its limit.
     """
+    check_limit(study, executor)
     if study.chosen_range is not None:
         within = f"belt speeds within {study.chosen_range.within:g} are chosen as a run goes"
         what = f"{within}, and a part of it cannot know them: run it whole, or give num"

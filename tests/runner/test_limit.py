@@ -17,6 +17,8 @@ import frictionlab as fl
 from frictionlab.runner import engine as limit
 from frictionlab.runner.engine import OverLimit, within
 from frictionlab.runner.pieces import Chunk
+from frictionlab.runner.solving import run_share
+from frictionlab.runner.store import Store
 from frictionlab.study.load import parse_study
 from frictionlab.values.notes import StudyError
 
@@ -104,9 +106,13 @@ def test_work_that_is_given_up_holds_nobody_back(released):
         within(60.0, released.wait, 60.0, given_up=given_up)
 
 
-def test_a_limit_needs_processes(released):
-    with pytest.raises(StudyError, match=r"limit\.seconds_per_point: needs processes: give --processes N"):
-        fl.run(STUDY)
+def test_a_limit_needs_processes(released, tmp_path):
+    ways = fl.run, lambda study: run_share(parse_study(study), (1, 2), Store(tmp_path))
+    for run in ways:
+        with pytest.raises(
+            StudyError, match=r"limit\.seconds_per_point: needs processes: give --processes N"
+        ):
+            run(STUDY)
 
 
 @pytest.mark.parametrize("given", [0, -1, "long", True])

@@ -24,6 +24,7 @@ from frictionlab.curves.verdict import Estimate, FrictionCurve, Shape, Unreadabl
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.runner.curve_loads import ONE_SIDED, loads_of, varies
+from frictionlab.runner.packing import WORDS
 from frictionlab.runner.pairs import OWN_ERROR_OF_MODELS
 from frictionlab.runner.part import beside_in_si
 from frictionlab.runner.table import value_in
@@ -100,7 +101,7 @@ def curve_inputs(columns: Iterable[str]) -> list[str]:
 
 def _frame(read: list[dict[str, Any]]) -> pd.DataFrame:
     columns = {name: [found.get(name) for found in read] for name in CURVES}
-    types = {name: pd.StringDtype(na_value=np.nan) if name in CURVE_TEXT else "float" for name in CURVES}
+    types = {name: WORDS if name in CURVE_TEXT else "float" for name in CURVES}
     return pd.DataFrame(columns, dtype=object).astype(types)
 
 

@@ -57,7 +57,7 @@ def _version(name: str) -> str | None:
 
 
 EMPTY_ACCOUNT = {"expect": [], "runs": [], "packages": {}, "code": {}, "files": {}, "counts": {}, "table": ""}
-"""What every provenance.json has."""
+"""Parts of every provenance.json."""
 
 
 class FolderFiles:
@@ -99,7 +99,7 @@ class FolderFiles:
         there = {
             path.relative_to(self.path).as_posix(): path.stat().st_size for path in files if path.exists()
         }
-        return {"table": checksum(self.table) if self.table.exists() else "", "files": there}
+        return {"table": checksum(self.table), "files": there}
 
     def damage(self) -> dict[str, str]:
         """Return what is wrong with files that a run wrote, by their names."""

@@ -123,8 +123,8 @@ class GatheredTable:
         """Write the table with these results, held in whole or in part. stopped: curves are not read then."""
         curves, inputs = solving.curves, InputColumns(solving.curves)
         reduced = {each.method.label for each in curves if each.method.is_reduced}
-        orbit_names = ["row", *solving.columns_of("orbits")]
-        asked = {*OF_SHAPE, *ALWAYS} & solving.task.columns
+        orbit_names = ["row", *(solving.columns_of("orbits") if solving.task.samples else ())]
+        of_curves = {*OF_SHAPE, *ALWAYS} & solving.task.columns
         for block in solving.blocks:
             first = min(curves[place].rows.start for place in block.curves)
             tell(first, solving.points, math.nan, "")
@@ -144,8 +144,8 @@ class GatheredTable:
                 harmonics = harmonic_table(given, answers)
                 self._keep(self._harmonics, files.add_harmonics, harmonics)
             self._states.append(states_table(given, answers))
-            read = table.iloc[:0] if stopped else result_frame(answers, given, asked)
-            self._curves.append(curve_table(read, laws, reduced))
+            read = table if stopped or of_curves <= {*names} else result_frame(answers, given, of_curves)
+            self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws, reduced))
         if solving.task.harmonics and not files.has_harmonics:
             files.add_harmonics(harmonics)  # the names of its columns
 

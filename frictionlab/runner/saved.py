@@ -22,6 +22,7 @@ from frictionlab.runner.files import FolderError, alone_in
 from frictionlab.runner.folder import run_folder
 from frictionlab.runner.folder_files import FolderFiles, rerun
 from frictionlab.runner.gathering import LONG_TABLE, shown_rows, thinned
+from frictionlab.runner.packing import WORDS
 from frictionlab.runner.results import Reader, Results
 from frictionlab.runner.table import status_counts
 from frictionlab.runner.table_files import (
@@ -56,11 +57,12 @@ def read_run(folder: Path) -> Results:
         raise FolderError(wrong[name])
     with _readable(files.table):
         rows, head = rows_of_file(files.table), read_head(files.table)
-        if told := _wrong(head, rows, study):
-            raise FolderError(f"{files.table} is not a result table: {told}; {_remedy(folder)}")
-        study = _with_chosen_speeds(study, files.table)
-        _check_belongs_together(folder, rows, study, account)
-        return read_folder(files, study, damaged=tuple(wrong.values()))
+    if told := _wrong(head, rows, study):
+        raise FolderError(f"{files.table} is not a result table: {told}; {_remedy(folder)}")
+    with _readable(files.table):
+        found = read_folder(files, study, damaged=tuple(wrong.values()))
+    _check_belongs_together(folder, rows, found.study, account)
+    return found
 
 
 @contextmanager
@@ -109,8 +111,8 @@ BESIDE_THE_TABLE = "onsets", "boundaries", "attractors", "harmonics"
 
 
 def _curves(files: FolderFiles) -> pd.DataFrame | None:
-    found, words = files.read_text(files.curves_file), pd.StringDtype(na_value=np.nan)
-    return None if found is None else found.astype({name: words for name in CURVE_TEXT if name in found})
+    found = files.read_text(files.curves_file)
+    return None if found is None else found.astype({name: WORDS for name in CURVE_TEXT if name in found})
 
 
 def _orbits(files: FolderFiles) -> pd.DataFrame | None:

@@ -114,9 +114,10 @@ class StudyRun:
             found, readers={**found.readers, "onsets": made["onsets"], "boundaries": made["boundaries"]}
         )
         found = replace(found, verdicts=self._verdicts(found))
-        folder.write_account(folder.account() | {"expect": [asdict(each) for each in found.verdicts]})
+        account = {**found.account, "expect": [asdict(each) for each in found.verdicts]}
+        folder.write_account(account)
         folder.write_study()
-        return replace(found, account=folder.account())
+        return replace(found, account=account)
 
     def _solve(self, curves: list[StudyCurve]) -> tuple[Solving, bool]:
         """Solve all that can be solved; return True where that was interrupted."""

@@ -169,9 +169,8 @@ def read_values(
     """
     if isinstance(source.tree, dict):
         apply_overrides(source, overrides)
-        _place_receptance(source.tree, folder)
-        for part in ("scene", "sweep"):
-            _place_waveforms(source.tree.get(part), folder)
+        for part in source.tree.keys() & {"scene", "sweep"}:
+            source.tree[part] = _placed(source.tree[part], folder, part)
     notes = Notes(source.notes)
     data = folder if with_files else None
     told = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes), data).values()
@@ -180,31 +179,20 @@ def read_values(
     return told
 
 
-def _place_receptance(tree: dict[str, Any], folder: FilePath) -> None:
-    """Say where the file of scene.body.receptance is: a study names it from its own folder."""
-    scene = tree.get("scene")
-    for part in (scene, scene.get("dimensional")) if isinstance(scene, dict) else ():
-        if isinstance(part, dict):
-            _place_file(part.get("body"), folder)
+def _placed(at: Any, folder: FilePath, name: str, depth: int = 8) -> Any:
+    """Return a part of a study with files of waveforms and receptances where they are, not deeper than they can lie.
 
-
-def _place_file(at: Any, folder: FilePath) -> None:
-    if isinstance(at, dict) and isinstance(at.get("receptance"), dict):
-        at, key = at["receptance"], "file"
-    else:
-        key = "receptance"
-    if isinstance(at, dict) and isinstance(at.get(key), str):
-        at[key] = str((folder / at[key]).resolve())
-
-
-def _place_waveforms(at: Any, folder: FilePath, named: bool = False, depth: int = 8) -> None:
-    """Say where files of waveforms are, not deeper than they can lie: a study names them from its own folder."""
-    if not isinstance(at, dict | list) or not depth:
-        return
-    if isinstance(at, dict) and named and isinstance(at.get("file"), str):
-        at["file"] = str(folder / at["file"])
-    for key, value in at.items() if isinstance(at, dict) else ((named * "waveform", each) for each in at):
-        _place_waveforms(value, folder, str(key).endswith("waveform"), depth - 1)
+    A study names them from its own folder. name: that of the part, in which an item is named as its list.
+    """
+    if isinstance(at, str) and name.endswith("waveform.file"):
+        return str(folder / at)
+    if isinstance(at, str) and name.endswith(("body.receptance", "body.receptance.file")):
+        return str((folder / at).resolve())
+    if isinstance(at, dict) and depth:
+        return {key: _placed(value, folder, f"{name}.{key}", depth - 1) for key, value in at.items()}
+    if isinstance(at, list) and depth:
+        return [_placed(value, folder, name, depth - 1) for value in at]
+    return at
 
 
 class _StudyReader:

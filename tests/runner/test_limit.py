@@ -82,13 +82,10 @@ def test_work_within_a_limit_gives_its_result_or_its_error():
         within(0.05, time.sleep, 2.0)
 
 
-def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypatch):
-    allowed = []
-    told = lambda seconds, work, chunk, **_: allowed.append(seconds) or work(chunk)  # noqa: E731
-    monkeypatch.setattr(limit, "within", told)
+def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(allowed):
     run_elsewhere(STUDY | {"sweep": {"scene.belt_speed": [10.0 + 0.01 * k for k in range(50)]}})
 
-    assert allowed == [0.3 * 50 / 10]
+    assert allowed == [(50, 0.3 * 50 / 10)]
 
 
 def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
@@ -107,11 +104,9 @@ def test_work_that_is_given_up_holds_nobody_back(released):
 
 
 def test_a_limit_needs_processes(released, tmp_path):
-    ways = fl.run, lambda study: run_share(parse_study(study), (1, 2), Store(tmp_path))
-    for run in ways:
-        with pytest.raises(
-            StudyError, match=r"limit\.seconds_per_point: needs processes: give --processes N"
-        ):
+    needs = r"limit\.seconds_per_point: needs processes: give --processes N"
+    for run in (fl.run, lambda study: run_share(parse_study(study), (1, 2), Store(tmp_path))):
+        with pytest.raises(StudyError, match=needs):
             run(STUDY)
 
 

@@ -6,7 +6,7 @@ import json
 import os
 import time
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -143,6 +143,7 @@ KEY = "ab" + "0" * 62
 TASK = Task(1e-8, samples=3, harmonics=2)
 
 
+@cache
 def solved() -> pa.Table:
     return solve_each(piece(task=TASK).chunks()).answers
 

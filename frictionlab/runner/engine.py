@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 Found = TypeVar("Found")
 LOOK = 0.1
 """Seconds between two looks at the time."""
-GIVE_UP = threading.Event()
-"""Never set: work that nobody gives up."""
+NEVER_GIVEN_UP = threading.Event()
+"""Event of work that nobody gives up: it is never set."""
 
 
 class OverLimit(Exception):
@@ -36,7 +36,7 @@ class OverLimit(Exception):
 
 
 def within(
-    seconds: float, work: Callable[..., Found], *arguments: Any, given_up: threading.Event = GIVE_UP
+    seconds: float, work: Callable[..., Found], *arguments: Any, given_up: threading.Event = NEVER_GIVEN_UP
 ) -> Found:
     """Return what the work returns, or raise what it raises; compiling does not count.
 
@@ -81,7 +81,7 @@ class Solved(NamedTuple):
     seconds: float
 
 
-def solve_each(chunks: Sequence[Chunk], given_up: threading.Event = GIVE_UP) -> Solved:
+def solve_each(chunks: Sequence[Chunk], given_up: threading.Event = NEVER_GIVEN_UP) -> Solved:
     """Answer every point of the chunks of a piece. Raises BrokenPlugin, CancelledError."""
     from frictionlab.runner.packing import packed_answers  # brings arrow: one number does without
 
@@ -93,7 +93,7 @@ def solve_each(chunks: Sequence[Chunk], given_up: threading.Event = GIVE_UP) -> 
     return Solved(packed_answers([part for part, _ in found]), sum(seconds for _, seconds in found))
 
 
-def solve_within(chunk: Chunk, given_up: threading.Event = GIVE_UP) -> tuple[Part, float]:
+def solve_within(chunk: Chunk, given_up: threading.Event = NEVER_GIVEN_UP) -> tuple[Part, float]:
     """Answer every point of a chunk; what takes too long is halved, down to the single points that do.
 
     Raises BrokenPlugin, CancelledError.
@@ -138,9 +138,9 @@ GRACE = 1.0
 MOST_SENT = 256
 """Pieces that are out at once: enough for the workers of a cluster, few enough to be held in memory."""
 MOST_SENDINGS = 5
-"""How often a piece is sent out whose worker was lost."""
+"""Times that a piece is sent out whose worker was lost."""
 MOST_RENEWALS = 20
-"""How often a pool is made anew that breaks before anything has come back."""
+"""Times that a pool is made anew that breaks before anything has come back."""
 
 SentPiece = tuple[Piece, list[Chunk]]
 """A piece and what methods are given of it."""

@@ -33,7 +33,7 @@ MOST_DIFFERENCES = 2
 LETTERS_SHOWN = 72
 """Letters shown of such a line."""
 SOLVER, ASKED = "solver", "asked"
-"""Where an account holds the digest of the code that found the numbers, and of what was asked for beside them."""
+"""Keys of an account: digests of the code that found the numbers, and of what was asked for beside them."""
 
 
 @dataclass(frozen=True)

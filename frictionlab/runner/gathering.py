@@ -62,7 +62,7 @@ def _shown_curves(grid: StudyGrid) -> list[int]:
 
 
 def _spread_over(count: int, most: int) -> Places:
-    """Of so many places this many at most, the first and the last among them."""
+    """Return this many places at most of so many, the first and the last among them."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
 
 

@@ -25,7 +25,7 @@ from frictionlab.runner.curve_table import curve_inputs
 from frictionlab.runner.part import STATE_NUMBERS, beside_in_si
 from frictionlab.runner.pieces import Chunk, Task
 from frictionlab.runner.solve import answer
-from frictionlab.runner.table import Inputs, inputs, kept_rows, scales_of_row, slice_of
+from frictionlab.runner.table import Inputs, inputs, kept_rows, slice_of
 from frictionlab.runner.words import column_in_si_words
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study.grid import StudyCurve
@@ -158,8 +158,7 @@ def _beside_inputs(given: Inputs, found: pd.DataFrame, order: Iterable[str]) -> 
     rows = found.pop("row").to_numpy()
     heads = {name: given.columns[name][rows] for name in curve_inputs(given.columns)}
     speeds = pd.DataFrame({"belt_speed": given.columns[BELT_SPEED][rows]})
-    scales = {name: scale[rows] for name, scale in (given.scales or {}).items()}
-    own = pd.concat([speeds, found, pd.DataFrame(beside_in_si(speeds, scales))], axis=1)
+    own = pd.concat([speeds, found, pd.DataFrame(beside_in_si(speeds, given.scales_of(rows)))], axis=1)
     names = dict.fromkeys([*(name for name in order if name in own), *own.columns])
     return pd.DataFrame(heads | {name: own[name] for name in names})
 
@@ -174,7 +173,7 @@ def _rows(
     curve: StudyCurve, given: Inputs, keys: Sequence[str], tolerance: float, starts: int
 ) -> Iterator[dict[str, Any]]:
     head = {name: given.columns[name][curve.rows[0]] for name in keys}
-    units = scales_of_row(given, curve.rows[0])
+    units = given.scales_of(curve.rows[0])
     speeds, places = np.unique(curve.scenes.belt_speeds, return_index=True)
     scenes, law, method = curve.scenes.taken(places), curve.law, curve.method.method
     if method.refusal(scenes[0], law) is not None:

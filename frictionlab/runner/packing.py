@@ -100,4 +100,4 @@ def _flat(lists: pa.ChunkedArray, sizes: NDArray[np.int64]) -> Floats:
 
 
 WORDS = pd.StringDtype(na_value=np.nan)
-"""The type of columns of words in tables."""
+"""Type of the columns of words in tables."""

@@ -166,9 +166,9 @@ def cuts(curves: Iterable[StudyCurve], long: bool) -> Iterator[Cut]:
         rows = np.arange(curve.rows.start, curve.rows.stop, curve.rows.step)
         quick = curve.given_law.memory_kind == "none" and not curve.scenes.scene.undriven
         size, points = (QUICK if quick else SLOW)[long], len(rising)
-        first = [0, *SLOW_END][: 0 if quick or long or points < 2 * size else None]
-        left = points - (first[-1] if first else 0)
+        begun = [0, *(() if quick or long or points < 2 * size else SLOW_END)]
+        left = points - begun[-1]
         count = max(1, round(left / size))
-        ends = [*first[:-1], *(points - left + left * piece // count for piece in range(count + 1))]
+        ends = [*begun, *(begun[-1] + left * piece // count for piece in range(1, count + 1))]
         for start, end in pairwise(ends):
             yield Cut(curve, rising[start:end], rows[rising[start:end]])

@@ -89,11 +89,12 @@ def read_folder(
     study = _with_chosen_speeds(study, files.table)
     if table is None and shown is None:
         shown = thinned(read_pieces(files.table), shown_rows(study))
-    orbits_are_damaged = any(str(files.orbits_file) in told for told in damaged)
+    orbits = files.orbits_file
+    are_damaged = any(str(orbits) in told for told in damaged)
     readers: dict[str, Reader] = {
         "table": lambda: read_whole(files.table) if table is None else table.copy(),
         "curves": lambda: _curves(files),
-        "orbits": lambda: None if orbits_are_damaged else _orbits(files),
+        "orbits": lambda: None if are_damaged or not orbits.exists() else read_whole(orbits),
         **{name: partial(files.read_text, files.path / f"{name}.csv") for name in BESIDE_THE_TABLE},
         **({} if shown is None else {"shown": lambda: shown}),
     }
@@ -113,10 +114,6 @@ BESIDE_THE_TABLE = "onsets", "boundaries", "attractors", "harmonics"
 def _curves(files: FolderFiles) -> pd.DataFrame | None:
     found = files.read_text(files.curves_file)
     return None if found is None else found.astype({name: WORDS for name in CURVE_TEXT if name in found})
-
-
-def _orbits(files: FolderFiles) -> pd.DataFrame | None:
-    return read_whole(files.orbits_file) if files.orbits_file.exists() else None
 
 
 def _check_is_a_run(folder: Path) -> None:

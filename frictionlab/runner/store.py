@@ -107,7 +107,7 @@ def _stand_in(record: FrictionLaw | Method) -> str:
 
 
 _BESIDE = {"belt_speed": 0.0, "dimensional": None}
-"""What of a scene says nothing about the numbers of a piece, or is told otherwise."""
+"""Values of a scene on which the numbers of a piece do not hang, or which its key holds otherwise."""
 _code_of_method = cache(registry.method_code)
 
 
@@ -227,9 +227,9 @@ _PLAIN = {
     "write_statistics": False,
     "write_page_checksum": True,
 }
-"""How a file is written: quickly, as most are read once."""
+"""Choices of the writer of files: quick ones, as most files are read once."""
 _MARK = b"columns"
-"""Where a file holds a checksum of what parquet has none of: its key, the names and the types of its columns."""
+"""Key of the checksum of what parquet has none of: the key of a piece, names and types of columns."""
 
 
 def _mark(key: str, answers: pa.Table) -> bytes:

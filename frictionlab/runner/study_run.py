@@ -63,7 +63,10 @@ class RunWays(NamedTuple):
 
 
 class StudyRun:
-    """One run of a study. folder: where its results go, None for nowhere; store: where its pieces are."""
+    """Run of a study, from its pieces to its files.
+
+    folder: its results go there, None to keep them in memory. store: its pieces are there.
+    """
 
     def __init__(self, study: Study, folder: RunFolder | None, store: Store, ways: RunWays) -> None:
         self.study, self.folder, self.store, self.ways = study, folder, store, ways
@@ -88,7 +91,7 @@ class StudyRun:
 
     @property
     def _long(self) -> RunFolder | None:
-        """The folder of a table that is too long to be held."""
+        """Folder into which a table goes that is too long to be held; None where it is held."""
         return self.folder if grid_size(self.study) > LONG_TABLE else None
 
     @property

@@ -37,6 +37,10 @@ class Inputs(NamedTuple):
     size: int
     scales: dict[str, Floats] | None = None
 
+    def scales_of(self, rows: Any) -> dict[str, Any]:
+        """Return the units of the results of a row, or of several; none where its scene is not given in SI units."""
+        return {name: scale[rows] for name, scale in (self.scales or {}).items()}
+
 
 def inputs(curves: Sequence[StudyCurve]) -> Inputs:
     """law, kind, method, then every value of the scenes and of the laws; empty (NaN, None) where a row has none."""
@@ -227,12 +231,5 @@ def kept_rows(answers: pa.Table, kind: str, given: Inputs, first: int = 0) -> pd
     """
     found = kept_of(answers, kind)
     places = found["row"].to_numpy()
-    scales = {name: scale[places] for name, scale in (given.scales or {}).items()}
     own = {name: found[name].to_numpy() for name in found.columns if name != "row"}
-    return pd.DataFrame({"row": places + first} | own | beside_in_si(own, scales))
-
-
-def scales_of_row(given: Inputs | None, row: int) -> dict[str, float]:
-    """Return the SI units of the results of a row; none where its scene is not given in them."""
-    found = {} if given is None or given.scales is None else given.scales
-    return {name: float(scales[row]) for name, scales in found.items()}
+    return pd.DataFrame({"row": places + first} | own | beside_in_si(own, given.scales_of(places)))

@@ -148,7 +148,7 @@ class Form(NamedTuple):
             return [(Fraction(share), Fraction(value)) for share, value in self._pairs]
         share, one = Fraction(self.numbers[0]), Fraction(1)
         if self.shape == "square":
-            return [(0 * one, one), (share, one), (share, -one), (one, -one)]
+            return [(Fraction(0), one), (share, one), (share, -one), (one, -one)]
         return [(share / 2, one), (1 - share / 2, -one)]
 
     @property

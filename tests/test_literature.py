@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import frictionlab as fl
+from frictionlab.scene.dimensional import Dimensional
 from frictionlab.study.load import parse_study
 from frictionlab.values.notes import StudyError, WrongValues
 
@@ -26,22 +27,24 @@ from frictionlab.values.notes import StudyError, WrongValues
         (fl.Coulomb, "F_s", "mu_static"),
         (fl.Stribeck, "vs", "stribeck_speed"),
         (fl.Jenkins, "k_t", "contact_stiffness"),
-        (fl.DimensionalDrive, "frequency_Hz", "frequency"),
-        (fl.DimensionalDrive, "Hz", "frequency"),
-        (fl.Dimensional, "m", "mass"),
-        (fl.Dimensional, "zeta", "damping_ratio"),
-        (fl.Dimensional, "f_n", "natural_frequency"),
-        (fl.Dimensional, "belt_velocity", "belt_speed"),
-        (fl.Dimensional, "normal_force", "normal_load"),
-        (fl.DimensionalBeltVibration, "amplitude", "displacement_amplitude"),
+        ("drive", "frequency_Hz", "frequency"),
+        ("drive", "Hz", "frequency"),
+        (Dimensional, "m", "mass"),
+        (Dimensional, "zeta", "damping_ratio"),
+        (Dimensional, "f_n", "natural_frequency"),
+        (Dimensional, "belt_velocity", "belt_speed"),
+        (Dimensional, "normal_force", "normal_load"),
+        ("belt_vibration", "amplitude", "displacement_amplitude"),
         (fl.Scene, "si", "dimensional"),
         (fl.Scene, "zeta", "damping_ratio"),
         (fl.Scene, "v_b", "belt_speed"),
     ],
 )
 def test_a_name_of_a_paper_leads_to_ours(record: Any, given: str, meant: str) -> None:
+    inside = {record: {given: 1}} if isinstance(record, str) else {given: 1}
+    made = Dimensional if isinstance(record, str) else record
     with pytest.raises(WrongValues, match=f"did you mean '{meant}'") as caught:
-        record(**{given: 1})
+        made(**inside)
 
     assert not any(f": {meant}: required" in str(each) for each in caught.value.mistakes)
 

@@ -61,7 +61,7 @@ def test_python_s_pages_tell_the_type_of_every_parameter(pages: dict[str, str]) 
     entries = dict(re.findall(r'id="frictionlab\.(\w+)">(.*?)(?=<dt class="sig|</section>)', text, re.DOTALL))
     functions = {name for name in fl.__all__ if inspect.isfunction(getattr(fl, name))}
 
-    assert set(entries) >= functions | {"Scene", "Dimensional", "Study", "SteadyState", "LuGre", "March"}
+    assert set(entries) >= functions | {"Scene", "Study", "SteadyState", "LuGre", "March"}
     for name, entry in entries.items():
         told = {each for each, text in _entries(entry) if re.match(r"\(.+?\) \N{EN DASH} \S", text)}
         taken = set(inspect.signature(getattr(fl, name)).parameters) - {"label"}

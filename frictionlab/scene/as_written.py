@@ -119,15 +119,17 @@ def _fields(data: Mapping[str, Any], part: type[AsWritten]) -> Iterator[tuple[st
         )
 
 
-def changed(record: Record, tree: Mapping[str, Any], changes: Any, others: Mapping[str, Any]) -> Any:
-    """Return the record made again from its values with changes by path and others by name.
+def changed(
+    record: type[Record], held: Record, changes: Any, others: Mapping[str, Any], within: str = ""
+) -> dict[str, Any]:
+    """Return the values given for a record with changes by path, which may begin with ``within``, and by name.
 
-    Raises WrongValues, and TypeError if the changes are no mapping.
+    Raises TypeError if the changes are no mapping.
     """
     if changes is not None and not isinstance(changes, Mapping):
         raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
-    given = _as_fields(type(record), {**(changes or {}), **others})
-    return type(record)(**with_values(tree, dict(given)))
+    all_of_them = {path.removeprefix(within): value for path, value in {**(changes or {}), **others}.items()}
+    return with_values(given_values(held), dict(_as_fields(record, all_of_them)))
 
 
 def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

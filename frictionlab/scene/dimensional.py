@@ -3,8 +3,8 @@
 
 Each part of a scene is stated once, nondimensional (``parts.py``). Its SI form has the same keys, with the
 unit behind those of numbers that have a dimension, the same limits and the same rules. Only springs,
-dashpots, mass, weight and length, from which the nondimensional numbers are made, have keys of their own
-here.
+dashpots, mass, weight, length and the ways to give an oscillation, from which the nondimensional numbers are
+made, have keys of their own here.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, Self, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.scene.as_written import AsWritten, changed, unit_of
+from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.parts import (
     BY_TABLE,
     BeltVibration,
@@ -53,7 +53,7 @@ from frictionlab.scene.units import (
     velocity_of,
 )
 from frictionlab.scene.waveforms import SINE
-from frictionlab.values.quantities import Finite, NonNegative, Positive, dimensions, given_values
+from frictionlab.values.quantities import Finite, NonNegative, Positive, dimensions
 
 STANDARD_GRAVITY = 9.81
 
@@ -63,24 +63,22 @@ class PartInSI(AsWritten):
 
     nondimensional: ClassVar[type[ScenePart]]
 
+    if TYPE_CHECKING:  # the numbers of parts that are made below
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    @classmethod
+    def called(cls) -> str:
+        """Return what one would type in Python to give it."""
+        return "dict"
+
     @classmethod
     def key(cls, name: str) -> str:
         """Return the key under which the part has the value of a nondimensional name."""
         return key_in_si(cls.nondimensional, name)
 
     def scaled(self, units: Units) -> dict[str, Any]:
-        """Return the values given, as those of the nondimensional part.
-
-        Parameters
-        ----------
-        units : Units
-            Units of the scene's nondimensional numbers.
-
-        Returns
-        -------
-        dict of str to Any
-            Values by nondimensional name.
-        """
+        """Return the values given, by the names of the nondimensional part, in these units."""
         found: dict[str, Any] = {}
         kinds = dimensions(self.nondimensional)
         for name in self.nondimensional.model_fields:
@@ -128,51 +126,29 @@ class _Shaken(PartInSI):
         return self
 
 
-def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI, **inside: Any) -> Any:
-    """Return the SI form of a part that has no keys of its own in SI units, except those of its base.
+class _Sprung(PartInSI):
+    """Motion of the mass on a spring and a dashpot, each given by one of two numbers.
 
-    ``inside`` holds the SI forms of the parts inside it.
+    Parameters
+    ----------
+    stiffness_N_per_m : float, > 0, optional
+        Stiffness of the spring [N/m]. Exactly one is given: it or ``natural_frequency_rad_per_s``.
+    natural_frequency_rad_per_s : float, > 0, optional
+        Natural frequency of the mass on that spring [rad/s].
+    damping_N_s_per_m : float, >= 0, optional
+        Damping of the dashpot [N s/m]. Exactly one is given: it or ``damping_ratio``.
+    damping_ratio : float, >= 0, optional
+        Damping ratio of the motion [-].
     """
-    kinds = get_type_hints(part, include_extras=True) | {name: kind | None for name, kind in inside.items()}
-    fields: dict[str, Any] = {
-        key: (kinds[name], ... if field.is_required() else field.default)
-        for name, field in part.model_fields.items()
-        if (key := key_in_si(part, name)) not in base.model_fields
-    }
-    name = f"Dimensional{part.__name__}"
-    docstring = _documented(part, name, example, base, inside)
-    made = create_model(name, __base__=base, __module__=__name__, __doc__=docstring, **fields)
-    made.nondimensional, made.alternatives = part, part.alternatives
-    return made
+
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING, DASHPOT)
+    stiffness_N_per_m: Positive | None = None
+    natural_frequency_rad_per_s: Positive | None = None
+    damping_N_s_per_m: NonNegative | None = None
+    damping_ratio: NonNegative | None = None
 
 
-def _documented(
-    part: type[ScenePart], name: str, example: str, base: type[PartInSI], inside: Mapping[str, Any]
-) -> str:
-    """Return the docstring of a part with the keys, units and types of its SI form."""
-    text = inspect.cleandoc(part.__doc__ or "").partition("\n\nExamples\n")[0]
-    text = text.replace(".", ", in SI units.", 1)
-    for field in dimensions(part):
-        key = key_in_si(part, field)
-        text = text.replace(f"``{field}``", f"``{key}``")
-        text = re.sub(rf"(?ms)^{field} : (.*?)\[[^]]*\]", rf"{key} : \1[{unit_of(key)}]", text, count=1)
-    for field in inside:
-        text = re.sub(rf"(?m)^{field} : ", f"{field} : Dimensional", text)
-    _, _, others = inspect.cleandoc(base.__doc__ or "").partition("\n" + SWINGS[1])
-    if others:  # the velocity, or one of the fields that the base adds
-        entry = rf"(?m)^({SWINGS[0]} : .*)((?:\n    .*)+)"
-        text = re.sub(entry, lambda found: f"{found[1]}, optional{found[2]}\n{SWINGS[1]}{others}", text)
-    lines = (
-        "Examples",
-        "--------",
-        ">>> import frictionlab as fl",
-        f">>> fl.{name}({example})",
-        f"{name}({example})",
-    )
-    return "\n".join([text, "", *lines])
-
-
-class DimensionalFractional(PartInSI):
+class _FractionalInSI(PartInSI):
     """Force coefficient*D^order x1 beside spring and dashpot of the body, in SI units.
 
     Parameters
@@ -182,12 +158,6 @@ class DimensionalFractional(PartInSI):
         (Weyl).
     order : float, > 0 and <= 1
         Order of the derivative [-].
-
-    Examples
-    --------
-    >>> import frictionlab as fl
-    >>> fl.DimensionalFractional(coefficient_N_sq_per_m=2, order=0.5)
-    DimensionalFractional(coefficient_N_sq_per_m=2, order=0.5)
     """
 
     nondimensional: ClassVar[type[ScenePart]] = Fractional
@@ -196,26 +166,13 @@ class DimensionalFractional(PartInSI):
     order: Order
 
     def scaled(self, units: Units) -> dict[str, Any]:
-        """Return the values given, as those of the nondimensional part.
-
-        Parameters
-        ----------
-        units : Units
-            Units of the scene's nondimensional numbers.
-
-        Returns
-        -------
-        dict of str to Any
-            Values by nondimensional name.
-        """
+        """Return coefficient and order in these units."""
         unit = units.force / units.length * units.time**self.order
         return {"coefficient": self.coefficient_N_sq_per_m / unit, "order": self.order}
 
 
-class DimensionalReceptance(PartInSI):
+class _ReceptanceInSI(PartInSI):
     """Frequency response of a linear body, in place of its mass, spring and dashpot, in SI units.
-
-    It is measured or computed by others.
 
     Parameters
     ----------
@@ -227,13 +184,6 @@ class DimensionalReceptance(PartInSI):
         Mass [kg]: above the last frequency x1 over force is -1/(free mass times frequency^2).
     digest : str, default ""
         Digest of the contents of the file; found if left out. A file with other contents is then refused.
-
-    Examples
-    --------
-    >>> import frictionlab as fl
-    >>> fl.DimensionalReceptance(file="no_such_file.csv", free_mass="2 kg")
-    Traceback (most recent call last):
-    frictionlab.values.notes.WrongValues: DimensionalReceptance: there is no file no_such_file.csv
     """
 
     nondimensional: ClassVar[type[ScenePart]] = Receptance
@@ -253,169 +203,47 @@ class DimensionalReceptance(PartInSI):
         return self
 
     def body(self) -> TabulatedBody:
-        """Return the body of the file, in SI units.
-
-        Returns
-        -------
-        TabulatedBody
-            Frequencies [rad/s] with x1 over force [m/N].
-        """
+        """Return the body of the file: frequencies [rad/s] with x1 over force [m/N]."""
         return read_receptance(self.file, self.free_mass_kg, in_si=True)
 
     def scaled(self, units: Units) -> dict[str, Any]:
-        """Return the same file, and the units it is in.
-
-        Parameters
-        ----------
-        units : Units
-            Units of the scene's nondimensional numbers.
-
-        Returns
-        -------
-        dict of str to Any
-            Values by nondimensional name.
-        """
+        """Return the same file, and the units it is in."""
         return super().scaled(units) | {
             "frequency_unit": units.time,
             "receptance_unit": units.force / units.length,
         }
 
 
-if TYPE_CHECKING:
-    DimensionalBody = PartInSI
-    DimensionalDrive = PartInSI
-    DimensionalRelaxation = PartInSI
-    DimensionalLoad = PartInSI
-    DimensionalBeltVibration = PartInSI
-    DimensionalNormalLoadVariation = PartInSI
-    DimensionalInitial = PartInSI
-    DimensionalSlip = PartInSI
-    DimensionalTransverseSlip = PartInSI
-else:
-    DimensionalDrive = _in_si(Drive, "amplitude_N=20, waveform='square', frequency_rad_per_s=300")
-    DimensionalLoad = _in_si(Load, "unbalance_kg_m=0.01, frequency_ratio=2")
-    DimensionalBeltVibration = _in_si(
-        BeltVibration, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken
-    )
-    DimensionalNormalLoadVariation = _in_si(NormalLoadVariation, "amplitude=0.3, frequency_rad_per_s=300")
-    DimensionalRelaxation = _in_si(Relaxation, "stiffness_N_per_m=50, time_s=0.01")
-    DimensionalBody = _in_si(
-        Body,
-        "cubic_stiffness_N_per_m3=5000",
-        relaxation=DimensionalRelaxation,
-        fractional=DimensionalFractional,
-        receptance=DimensionalReceptance,
-    )
-    DimensionalInitial = _in_si(Initial, "x_m=0.001")
-    DimensionalSlip = _in_si(Slip, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken)
-    DimensionalTransverseSlip = _in_si(
-        TransverseSlip, "velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300", _Shaken
-    )
+def _in_si(part: type[ScenePart], base: type[PartInSI] = PartInSI, **inside: Any) -> Any:
+    """Make the SI form of a part: the keys of its base, then those of its other values.
 
-
-class DimensionalTransverse(PartInSI):
-    """Motion of the same mass along x2, across the belt, in SI units.
-
-    Parameters
-    ----------
-    stiffness_N_per_m : float, > 0, optional
-        Stiffness K_2 of the spring across the belt [N/m]. Exactly one is given: it or
-        ``natural_frequency_rad_per_s``.
-    natural_frequency_rad_per_s : float, > 0, optional
-        Natural frequency of the mass on that spring [rad/s].
-    damping_N_s_per_m : float, >= 0, optional
-        Damping C_2 of the dashpot across the belt [N s/m]. Exactly one is given: it or ``damping_ratio``.
-    damping_ratio : float, >= 0, optional
-        Damping ratio of the motion across the belt [-].
-    load : DimensionalLoad, optional
-        Force across the belt; no force if left out.
-
-    Examples
-    --------
-    >>> import frictionlab as fl
-    >>> fl.DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
-    DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
+    ``inside`` holds the SI forms of the parts inside it.
     """
+    kinds = get_type_hints(part, include_extras=True) | {name: kind | None for name, kind in inside.items()}
+    fields: dict[str, Any] = {
+        key: (kinds[name], ... if field.is_required() else field.default)
+        for name, field in part.model_fields.items()
+        if (key := key_in_si(part, name)) not in base.model_fields
+    }
+    name = f"{part.__name__}InSI"
+    made = create_model(name, __base__=base, __module__=__name__, __doc__=_documented(part), **fields)
+    made.nondimensional, made.alternatives = part, part.alternatives
+    globals()[name] = made  # where pickle looks for it
+    return made
 
-    nondimensional: ClassVar[type[ScenePart]] = Transverse
 
-    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING, DASHPOT)
-    stiffness_N_per_m: Positive | None = None
-    natural_frequency_rad_per_s: Positive | None = None
-    damping_N_s_per_m: NonNegative | None = None
-    damping_ratio: NonNegative | None = None
-    load: DimensionalLoad | None = None
+def _documented(part: type[ScenePart]) -> str:
+    """Return the docstring of a part with the keys and units of its SI form."""
+    text = inspect.cleandoc(part.__doc__ or "").partition("\n\nExamples\n")[0]
+    for field in dimensions(part):
+        key = key_in_si(part, field)
+        text = text.replace(f"``{field}``", f"``{key}``")
+        text = re.sub(rf"(?ms)^{field} : (.*?)\[[^]]*\]", rf"{key} : \1[{unit_of(key)}]", text, count=1)
+    return text
 
 
-class Dimensional(AsWritten):
-    """Body on a moving belt, shaken, in SI units.
-
-    Every number may be text with a unit, its key without one: ``belt_speed="2 mm/s"``, ``frequency="60 Hz"``.
-    ``slip`` and ``transverse_slip`` prescribe a motion in place of mass, spring, dashpot and loads.
-    ``body.receptance`` stands for mass, spring and dashpot, too; K_1 is then that of the body at rest, M the
-    free mass, or if there is none K_1 over the square of the drive's frequency.
-
-    Parameters
-    ----------
-    mass_kg : float, > 0, optional
-        Mass M [kg]; required unless ``slip``, ``transverse_slip`` or ``body.receptance`` is given.
-    stiffness_N_per_m : float, > 0, optional
-        Stiffness K_1 of the spring along the belt [N/m]. With a mass exactly one is given: it or
-        ``natural_frequency_rad_per_s``.
-    natural_frequency_rad_per_s : float, > 0, optional
-        Natural frequency omega_1 of the mass on that spring [rad/s].
-    damping_N_s_per_m : float, >= 0, optional
-        Damping C_1 of the dashpot along the belt [N s/m]. With a mass exactly one is given: it or
-        ``damping_ratio``.
-    damping_ratio : float, >= 0, optional
-        Damping ratio of the motion along the belt [-].
-    length_m : float, > 0, optional
-        Length scale L of the nondimensional columns [m]; no result in SI units depends on it. If left out it
-        is the largest amplitude without friction, of each load and of the belt's vibration as a sine of its
-        size; normal load over stiffness if nothing shakes.
-    gravity_m_per_s2 : float, > 0, optional
-        Gravity [m/s^2]: the normal load is the weight. 9.81 if ``normal_load_N`` is left out.
-    normal_load_N : float, > 0, optional
-        Normal load [N], instead of ``gravity_m_per_s2``; 1 if left out with a prescribed slip.
-    belt_speed_m_per_s : float
-        Belt speed V_b [m/s].
-    drive : DimensionalDrive, optional
-        Force along the belt.
-    transverse : DimensionalTransverse, optional
-        Motion across the belt; one degree of freedom if left out.
-    body : DimensionalBody, optional
-        Nonlinear and viscoelastic parts of the body, or its frequency response.
-    slip : DimensionalSlip, optional
-        Prescribed slip along the belt.
-    transverse_slip : DimensionalTransverseSlip, optional
-        Prescribed slip across the belt.
-    belt_vibration : DimensionalBeltVibration, optional
-        Vibration of the belt.
-    normal_load_variation : DimensionalNormalLoadVariation, optional
-        Variation of the normal load in time.
-    initial : DimensionalInitial, optional
-        Start of the mass; at rest on the belt with the spring undeflected if left out.
-
-    Raises
-    ------
-    WrongValues
-        If values make no scene; the message has every mistake.
-
-    References
-    ----------
-    Source: Sulollari, van Dalen & Cabboi, Eq. 2.
-
-    Examples
-    --------
-    >>> import frictionlab as fl
-    >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m", "length": "1 mm"}
-    >>> drive = fl.DimensionalDrive(amplitude="20 N", frequency_rad_per_s=20)
-    >>> scene = fl.Scene(dimensional=fl.Dimensional(**body, belt_speed="50 mm/s", drive=drive))
-    >>> scene.damping_ratio, scene.normal_load, scene.belt_speed
-    (0.1, 24.525, 2.5)
-    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).si["mean_friction_N"], 4)
-    0.0332
-    """
+class InSI(PartInSI):
+    """Body on a moving belt, shaken, in SI units, as ``Scene.si`` makes it; ``Dimensional`` has its parts, too."""
 
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = (("mass_kg",), SPRING, DASHPOT)
     mass_kg: Positive | None = None
@@ -427,52 +255,41 @@ class Dimensional(AsWritten):
     gravity_m_per_s2: Positive | None = None
     normal_load_N: Positive | None = None
     belt_speed_m_per_s: Finite
-    drive: DimensionalDrive | None = None
-    transverse: DimensionalTransverse | None = None
-    body: DimensionalBody | None = None
-    slip: DimensionalSlip | None = None
-    transverse_slip: DimensionalTransverseSlip | None = None
-    belt_vibration: DimensionalBeltVibration | None = None
-    normal_load_variation: DimensionalNormalLoadVariation | None = None
-    initial: DimensionalInitial | None = None
 
-    def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Dimensional:
-        """Return the same body with other values.
+    @classmethod
+    def called(cls) -> str:
+        """Return what one would type in Python to make it."""
+        return "Scene.si"
 
-        Parameters
-        ----------
-        changes : mapping of str to Any, optional
-            New values by dotted path: ``{"drive.frequency": "60 Hz"}``. None leaves a value out.
-        **others : Any
-            New values by name: ``mass="2 kg"``. None leaves a value out.
-
-        Returns
-        -------
-        Dimensional
-            Body with the new values.
-
-        Raises
-        ------
-        WrongValues
-            If the values make no scene.
-        TypeError
-            If ``changes`` is no mapping.
-
-        Examples
-        --------
-        >>> import frictionlab as fl
-        >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m"}
-        >>> fl.Dimensional(**body, belt_speed="50 mm/s").with_(belt_speed="6 cm/s", damping=None, damping_ratio=0.1)
-        Dimensional(mass_kg=1, stiffness_N_per_m=400, damping_ratio=0.1, belt_speed_m_per_s=0.06)
-        """
-        return cast(Dimensional, changed(self, given_values(self), changes, others))
+    def scaled(self, _units: Units | None = None) -> dict[str, Any]:
+        """Return the nondimensional scene as plain nested values, from which ``Scene`` is made."""
+        scales, mass, across = self.scales, self.mass_kg, self.transverse
+        found: dict[str, Any] = {
+            name: part.scaled(scales) for name, part in self if isinstance(part, PartInSI)
+        }
+        for name in ("belt_vibration", "slip", "transverse_slip"):
+            if (part := getattr(self, name)) is not None:
+                frequency = self.frequency * (getattr(part, "frequency_ratio", None) or 1.0)
+                found[name]["velocity_amplitude"] = velocity_of(part, frequency) / scales.velocity
+        found |= {
+            "normal_load": self.load / scales.force,
+            "belt_speed": self.belt_speed_m_per_s / scales.velocity,
+        }
+        if mass is None:
+            return found
+        if across is not None:
+            found["transverse"] |= {
+                "natural_frequency": math.sqrt(stiffness_of(across, mass) / stiffness_of(self, mass)),
+                "damping_ratio": damping_ratio_of(across, mass),
+            }
+        return found | {"damping_ratio": damping_ratio_of(self, mass)}
 
     @classmethod
     def _needed(cls, data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         return () if _prescribed(data) or _by_table(data) else cls.one_of
 
     @model_validator(mode="after")
-    def _one_scene(self) -> Dimensional:
+    def _one_scene(self) -> Self:
         both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
         others = self._of_slip() if self.is_prescribed else [*self._of_table(), *problems_of_parts(self)]
@@ -555,35 +372,6 @@ class Dimensional(AsWritten):
         assert self.mass_kg is not None
         return self.mass_kg * self.gravity_m_per_s2
 
-    def scaled(self) -> dict[str, Any]:
-        """Return the nondimensional scene as plain nested values.
-
-        Returns
-        -------
-        dict of str to Any
-            Values by name, from which ``Scene`` is made.
-        """
-        scales, mass, across = self.scales, self.mass_kg, self.transverse
-        found: dict[str, Any] = {
-            name: part.scaled(scales) for name, part in self if isinstance(part, PartInSI)
-        }
-        for name in ("belt_vibration", "slip", "transverse_slip"):
-            if (part := getattr(self, name)) is not None:
-                frequency = self.frequency * (getattr(part, "frequency_ratio", None) or 1.0)
-                found[name]["velocity_amplitude"] = velocity_of(part, frequency) / scales.velocity
-        found |= {
-            "normal_load": self.load / scales.force,
-            "belt_speed": self.belt_speed_m_per_s / scales.velocity,
-        }
-        if mass is None:
-            return found
-        if across is not None:
-            found["transverse"] |= {
-                "natural_frequency": math.sqrt(stiffness_of(across, mass) / stiffness_of(self, mass)),
-                "damping_ratio": damping_ratio_of(across, mass),
-            }
-        return found | {"damping_ratio": damping_ratio_of(self, mass)}
-
 
 def _by_table(data: Mapping[str, Any]) -> bool:
     body = data.get("body")
@@ -601,3 +389,31 @@ def _numbers(tree: dict[str, Any]) -> Iterator[float]:
             yield from _numbers(value)
         elif isinstance(value, float):
             yield value
+
+
+if TYPE_CHECKING:
+    Dimensional = InSI
+else:
+    Dimensional = create_model(
+        "Dimensional",
+        __base__=InSI,
+        __module__=__name__,
+        **{
+            name: (form | None, None)
+            for name, form in {
+                "drive": _in_si(Drive),
+                "transverse": _in_si(Transverse, _Sprung, load=_in_si(Load)),
+                "body": _in_si(
+                    Body,
+                    relaxation=_in_si(Relaxation),
+                    fractional=_FractionalInSI,
+                    receptance=_ReceptanceInSI,
+                ),
+                "slip": _in_si(Slip, _Shaken),
+                "transverse_slip": _in_si(TransverseSlip, _Shaken),
+                "belt_vibration": _in_si(BeltVibration, _Shaken),
+                "normal_load_variation": _in_si(NormalLoadVariation),
+                "initial": _in_si(Initial),
+            }.items()
+        },
+    )

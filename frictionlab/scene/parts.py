@@ -204,7 +204,7 @@ class Transverse(ScenePart):
     0.0426
     """
 
-    natural_frequency: Positive
+    natural_frequency: Annotated[Positive, FREQUENCY]
     damping_ratio: NonNegative
     load: Load | None = None
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Annotated, Any, NamedTuple, cast
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import ValidationError, model_validator
 
@@ -145,7 +145,7 @@ class Scene(ScenePart):
     """Body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
     Nondimensional: times in 1/omega_1, lengths in L, forces in K_1 L, for a mass on a spring K_1.
-    ``dimensional`` gives all of it in SI units instead; every other field is then filled from it (Eq. 2).
+    ``Scene.si`` makes one in SI units; every other field is then filled from them (Eq. 2).
 
     Parameters
     ----------
@@ -175,8 +175,8 @@ class Scene(ScenePart):
         Variation of the normal load in time; constant if left out.
     initial : Initial, optional
         Start of the mass; at rest on the belt with the spring undeflected if left out.
-    dimensional : Dimensional, optional
-        Scene in SI units, instead of all other fields.
+    dimensional : dict, optional
+        Values that ``Scene.si`` takes, instead of all other fields.
 
     Raises
     ------
@@ -250,6 +250,90 @@ class Scene(ScenePart):
     def _shown(self) -> dict[str, Any]:
         """Return the values that are shown: ``dimensional`` alone if it gives all others."""
         return super()._shown() if self.dimensional is None else {"dimensional": self.dimensional}
+
+    def __repr__(self) -> str:
+        """Return the call that makes it again."""
+        return super().__repr__() if self.dimensional is None else repr(self.dimensional)
+
+    __str__ = __repr__
+
+    @classmethod
+    def si(cls, **values: Any) -> Scene:
+        """Make a scene from numbers in SI units.
+
+        Every number may be text with a unit, its key without one: ``belt_speed="2 mm/s"``,
+        ``frequency="60 Hz"``. Parts are mappings: ``drive={"amplitude": "20 N", "frequency": "60 Hz"}``.
+        ``slip`` and ``transverse_slip`` prescribe a motion in place of mass, spring, dashpot and loads.
+        ``body.receptance`` stands for mass, spring and dashpot, too; K_1 is then that of the body at rest, M
+        the free mass, or if there is none K_1 over the square of the drive's frequency.
+
+        Parameters
+        ----------
+        mass_kg : float, > 0, optional
+            Mass M [kg]; required unless ``slip``, ``transverse_slip`` or ``body.receptance`` is given.
+        stiffness_N_per_m : float, > 0, optional
+            Stiffness K_1 of the spring along the belt [N/m]. With a mass exactly one is given: it or
+            ``natural_frequency_rad_per_s``.
+        natural_frequency_rad_per_s : float, > 0, optional
+            Natural frequency omega_1 of the mass on that spring [rad/s].
+        damping_N_s_per_m : float, >= 0, optional
+            Damping C_1 of the dashpot along the belt [N s/m]. With a mass exactly one is given: it or
+            ``damping_ratio``.
+        damping_ratio : float, >= 0, optional
+            Damping ratio of the motion along the belt [-].
+        length_m : float, > 0, optional
+            Length scale L of the nondimensional columns [m]; no result in SI units depends on it. If left out it
+            is the largest amplitude without friction, of each load and of the belt's vibration as a sine of its
+            size; normal load over stiffness if nothing shakes.
+        gravity_m_per_s2 : float, > 0, optional
+            Gravity [m/s^2]: the normal load is the weight. 9.81 if ``normal_load_N`` is left out.
+        normal_load_N : float, > 0, optional
+            Normal load [N], instead of ``gravity_m_per_s2``; 1 if left out with a prescribed slip.
+        belt_speed_m_per_s : float
+            Belt speed V_b [m/s].
+        drive : dict, optional
+            Force along the belt.
+        transverse : dict, optional
+            Motion across the belt; one degree of freedom if left out.
+        body : dict, optional
+            Nonlinear and viscoelastic parts of the body, or its frequency response.
+        slip : dict, optional
+            Prescribed slip along the belt.
+        transverse_slip : dict, optional
+            Prescribed slip across the belt.
+        belt_vibration : dict, optional
+            Vibration of the belt.
+        normal_load_variation : dict, optional
+            Variation of the normal load in time.
+        initial : dict, optional
+            Start of the mass; at rest on the belt with the spring undeflected if left out.
+
+        Returns
+        -------
+        Scene
+            Scene; ``scene.dimensional`` has its numbers in SI units.
+
+        Raises
+        ------
+        WrongValues
+            If values make no scene; the message has every mistake.
+
+        References
+        ----------
+        Source: Sulollari, van Dalen & Cabboi, Eq. 2.
+
+        Examples
+        --------
+        >>> import frictionlab as fl
+        >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m", "length": "1 mm"}
+        >>> drive = {"amplitude": "20 N", "frequency_rad_per_s": 20}
+        >>> scene = fl.Scene.si(**body, belt_speed="50 mm/s", drive=drive)
+        >>> scene.damping_ratio, scene.normal_load, scene.belt_speed
+        (0.1, 24.525, 2.5)
+        >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).si["mean_friction_N"], 4)
+        0.0332
+        """
+        return cls.model_validate({"dimensional": Dimensional(**values)})
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -440,7 +524,7 @@ class Scene(ScenePart):
     def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Scene:
         """Return the same scene with other values.
 
-        A scene in SI units is changed in them: ``with_({"dimensional.mass": "2 kg"})``.
+        A scene in SI units is changed in them: ``with_(mass="2 kg")``.
 
         Parameters
         ----------
@@ -468,9 +552,9 @@ class Scene(ScenePart):
         >>> scene.with_(belt_speed=2, drive=fl.Drive(amplitude=3, frequency=1))
         Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=Drive(amplitude=3, frequency=1))
         """
-        given = given_values(self)
-        tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}
-        return cast(Scene, changed(self, tree, changes, others))
+        if self.dimensional is None:
+            return type(self)(**changed(Scene, self, changes, others))
+        return type(self).si(**changed(Dimensional, self.dimensional, changes, others, "dimensional."))
 
     def checked(self) -> Scene:
         """Return the same scene, made again from the values it was given.
@@ -525,3 +609,6 @@ def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, float | str]:
         else:
             flat |= _flat(value, f"{prefix}{key}.")
     return flat
+
+
+Dimensional.__doc__ = Scene.si.__doc__  # whence studies tell what its keys mean

@@ -328,5 +328,5 @@ def _refuse_units(law: FrictionLaw) -> None:
         if isinstance(value, Written):
             raise ValueError(
                 f"{type(law).__name__}: {name}: {value.text} has a unit, and the scene is nondimensional: give a "
-                "number in its scales, or the scene in SI units, fl.Scene(dimensional=fl.Dimensional(...))"
+                "number in its scales, or the scene in SI units, fl.Scene.si(...)"
             )

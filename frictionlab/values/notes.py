@@ -217,8 +217,8 @@ def value_text(value: Any) -> str:
         return "null"
     if isinstance(value, bool):
         return str(value).lower()
-    if isinstance(value, (int, float)):
-        return number_text(value)
+    if isinstance(value, (int, float)):  # of one with a unit what was written
+        return str(getattr(value, "text", number_text(value)))
     if isinstance(value, str):
         return f"the text {_short(value)!r}{_advice(value)}"
     if isinstance(value, (dict, list, tuple)):

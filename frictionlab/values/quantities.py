@@ -119,7 +119,7 @@ def _a_number(value: object, checked: ValidatorFunctionWrapHandler) -> float:
         raise ValueError(value.what)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError("must be a number")
-    number = checked(float(value))
+    number = checked(value if isinstance(value, Written) else float(value))
     return value if isinstance(value, Written) else cast(float, number)
 
 
@@ -319,6 +319,11 @@ class Record(BaseModel, metaclass=_Listed):
         cls.__signature__ = keywords([(name, cls.model_fields[name]) for name in cls._in_order()], beside)
 
     @classmethod
+    def called(cls) -> str:
+        """Return what one would type in Python to make it."""
+        return cls.__name__
+
+    @classmethod
     def _in_order(cls) -> list[str]:
         """Return the names of its values in the order in which they are shown: choices among words last."""
         fields = cls.model_fields
@@ -342,7 +347,7 @@ class Record(BaseModel, metaclass=_Listed):
     def __repr__(self) -> str:
         """Return the call that makes it again."""
         values = ", ".join(f"{name}={typed(value)}" for name, value in self.__repr_args__())
-        return f"{type(self).__name__}({values})"
+        return f"{self.called()}({values})"
 
     __str__ = __repr__
 

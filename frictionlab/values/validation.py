@@ -154,7 +154,12 @@ def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongVal
         record.model_validate(values)
     except ValidationError as problem:
         _Told(record, values, (), notes).add(problem)
-    return WrongValues([_in_python(note, record.__name__, values) for note in notes.all])
+    return WrongValues([_in_python(note, _called(record), values) for note in notes.all])
+
+
+def _called(record: type[BaseModel]) -> str:
+    """Return what one would type in Python to make a record."""
+    return record.called() if hasattr(record, "called") else record.__name__
 
 
 _SEVERAL = "one number here: fl.curve, fl.compare and fl.sweep take several"
@@ -258,7 +263,7 @@ class _Told:
         if part is not None and self._is_rule(error):
             return self._rules(part, loc, _message(error))
         if part is not None:
-            return f"must be {self._notes.notation.part.format(part.__name__)}, got {text_of(error['input'])}"
+            return f"must be {self._notes.notation.part.format(_called(part))}, got {text_of(error['input'])}"
         path, what = placed(self._at(loc), _value_mistake(error, text_of), error["input"])
         self._notes.add(path, what, _meant(error))
         return ""

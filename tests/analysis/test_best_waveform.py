@@ -97,8 +97,8 @@ def test_a_drive_turns_across_a_quick_belt() -> None:
 
 def test_a_scene_in_si_units_gets_a_drive_in_them() -> None:
     body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m", "normal_load_N": 4.0}
-    drive = fl.DimensionalDrive(amplitude="4 N", frequency_rad_per_s=20)
-    scene = fl.Scene(dimensional=fl.Dimensional(**body, belt_speed="100 mm/s", drive=drive))
+    drive = {"amplitude": "4 N", "frequency_rad_per_s": 20}
+    scene = fl.Scene.si(**body, belt_speed="100 mm/s", drive=drive)
     found = fl.best_waveform(scene, LAW, harmonics=2, equal="rms", starts=1)
     there = fl.steady_state(scene.with_({"dimensional.drive": found.drive}), LAW)
     assert there.mean_friction == pytest.approx(found.mean_friction, abs=1e-8)

@@ -80,7 +80,7 @@ def test_a_square_load_is_differentiated_from_an_instant_at_which_it_does_not_ju
 def test_scenes_in_si_units_are_differentiated_by_their_own_numbers() -> None:
     mass = {"mass_kg": 2.0, "stiffness_N_per_m": 800.0, "damping_N_s_per_m": 8.0, "length_m": 0.01}
     drive = {"amplitude_N": 60.0, "frequency_rad_per_s": 25.0}
-    si = fl.Scene(dimensional=fl.Dimensional(**mass, belt_speed_m_per_s=0.3, drive=drive))
+    si = fl.Scene.si(**mass, belt_speed_m_per_s=0.3, drive=drive)
     path = "scene.dimensional.mass_kg"
     (row,) = fl.sensitivities(si, COULOMB, [path]).itertuples()
     assert abs(row.derivative - _difference(si, COULOMB, path, 2.0)) <= row.error + 1e-8

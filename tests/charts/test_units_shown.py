@@ -83,7 +83,7 @@ def test_a_handy_unit_has_a_number_of_readable_size(largest: float, unit: str) -
 
 def test_numbers_without_a_unit_are_shown_in_that_of_the_scene() -> None:
     body = {"mass": "0.5 kg", "stiffness": "5 kN/m", "damping": "5 N s/m", "belt_speed": "2 mm/s"}
-    scene = fl.Scene(dimensional=fl.Dimensional(**body, drive={"amplitude": "20 N", "frequency": "10 Hz"}))
+    scene = fl.Scene.si(**body, drive={"amplitude": "20 N", "frequency": "10 Hz"})
     found = fl.compare(scene, fl.Coulomb(mu=0.3), belt_speed=[0.01, 0.02])
 
     assert found.plot().axes[0].get_xlabel() == "belt speed $V_b$ [mm/s]"

@@ -44,8 +44,8 @@ def test_no_number_in_si_units_depends_on_the_length_scale() -> None:
 
 def test_orbits_are_scaled_by_length_natural_frequency_and_stiffness() -> None:
     """L = 1 mm, omega_1 = 100 rad/s, K_1 = 5 kN/m."""
-    body = fl.Dimensional(**BODY, belt_speed="50 mm/s")
-    orbit = fl.steady_state(fl.Scene(dimensional=body), fl.Coulomb(mu=0.3)).orbit(8)
+    body = fl.Scene.si(**BODY, belt_speed="50 mm/s")
+    orbit = fl.steady_state(body, fl.Coulomb(mu=0.3)).orbit(8)
 
     scales = {"tau": 1e-2, "x1": 1e-3, "v1": 0.1, "slip": 0.1, "load": 5.0, "normal_load": 5.0, "work": 5e-3}
     for name, scale in scales.items():
@@ -71,8 +71,8 @@ def test_sentences_have_lengths_and_speeds_in_si_units_once() -> None:
 
 
 def test_what_a_curve_needs_is_told_in_the_units_of_its_scene() -> None:
-    body = fl.Dimensional(**BODY, belt_speed="2 mm/s")
-    found = fl.needs(fl.Scene(dimensional=body), fl.Dahl(mu=0.3, presliding_length="1 um"))
+    body = fl.Scene.si(**BODY, belt_speed="2 mm/s")
+    found = fl.needs(body, fl.Dahl(mu=0.3, presliding_length="1 um"))
 
     assert "at belt speed 2 mm/s" in found.sentences[0]
     assert "presliding_length 1 µm" in repr(found) or "Coulomb" in repr(found)

@@ -139,8 +139,12 @@ def test_a_scene_with_other_values_is_a_scene_made_of_them() -> None:
         (SCENE, {"drive.amplitude": 2}, "Scene: drive: give exactly one of unbalance and amplitude"),
         (SCENE, {"belt_speed.x": 2}, "Scene: belt_speed: must be a number, got a mapping"),
         (SCENE, {"transverse.load.amplitude": 2}, "transverse.natural_frequency: required key is missing"),
-        (SI, {"belt_speed": 2}, "Scene: belt_speed: leave it out, dimensional gives the scene"),
-        (SI, {"dimensional.mass_kg": -2}, "Scene: dimensional.mass_kg: must be > 0, got -2"),
+        (
+            SI,
+            {"belt_speed": 2},
+            "Scene.si: belt_speed_m_per_s: 2 has no unit; give a speed [m/s] such as '2 mm/s'",
+        ),
+        (SI, {"dimensional.mass_kg": -2}, "Scene.si: mass_kg: must be > 0, got -2"),
     ],
 )
 def test_a_scene_refuses_other_values_that_make_none(scene: fl.Scene, changes: Any, said: str) -> None:

@@ -17,6 +17,7 @@ import frictionlab as fl
 from frictionlab.charts.curves import family_of
 from frictionlab.charts.figures import FigureData
 from frictionlab.laws.base import Dimension, Positive, Record
+from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import Units, scaled_law
 from frictionlab.study.load import parse_study
@@ -73,7 +74,7 @@ def in_si(scene: Scene, mass: float, stiffness: float, length: float) -> dict[st
 
 
 def si_scene(**body: Any) -> Scene:
-    return Scene(dimensional=fl.Dimensional.model_validate(body))
+    return Scene.si(**body)
 
 
 # One physics
@@ -443,7 +444,7 @@ def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:
     from frictionlab.values.validation import number_paths
 
     starts, without_unit = "initial.", ("frequency_ratio", "variation.amplitude", "damping_ratio", ".order")
-    for path in number_paths(fl.Dimensional):
+    for path in number_paths(Dimensional):
         if path.endswith(without_unit):
             assert word(f"scene.dimensional.{path}").endswith("$"), path
         elif not path.startswith(starts):

@@ -10,6 +10,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.report.equation import equations
+from frictionlab.scene.dimensional import Dimensional
 from frictionlab.study.load import load_study
 from frictionlab.values.notes import StudyError, WrongValues
 
@@ -34,8 +35,8 @@ def table(folder: Path, head: str = "frequency,real,imaginary") -> str:
 @pytest.mark.parametrize("head", ["frequency,real,imaginary", WITH_UNITS])
 def test_a_table_is_the_scene_of_its_mass_spring_and_dashpot(tmp_path: Path, head: str) -> None:
     body = {"receptance": {"file": table(tmp_path, head), "free_mass": "500 g"}}
-    springs = fl.Dimensional(mass_kg=MASS, stiffness_N_per_m=STIFFNESS, damping_N_s_per_m=DAMPING, **SHARED)
-    told = fl.Dimensional(body=body, **SHARED)
+    springs = Dimensional(mass_kg=MASS, stiffness_N_per_m=STIFFNESS, damping_N_s_per_m=DAMPING, **SHARED)
+    told = Dimensional(body=body, **SHARED)
     scene, other = fl.Scene(dimensional=told), fl.Scene(dimensional=springs)
 
     np.testing.assert_allclose(told.scales, springs.scales, rtol=1e-9)
@@ -56,7 +57,7 @@ def test_a_table_is_the_scene_of_its_mass_spring_and_dashpot(tmp_path: Path, hea
 
 
 def test_without_a_free_mass_time_is_that_of_the_drive(tmp_path: Path) -> None:
-    told = fl.Dimensional(body={"receptance": table(tmp_path)}, **SHARED)
+    told = Dimensional(body={"receptance": table(tmp_path)}, **SHARED)
 
     assert fl.Scene(dimensional=told).frequency == pytest.approx(1.0)
     assert fl.steady_state(fl.Scene(dimensional=told), fl.Coulomb(mu=0.3)).status == "refused"
@@ -80,7 +81,7 @@ def test_what_does_not_go_with_a_table_is_told(tmp_path: Path, change: dict[str,
     body = {**body, "receptance": inside if isinstance(inside, str) else receptance | inside}
 
     with pytest.raises(WrongValues) as told:
-        fl.Dimensional(**(SHARED | change | {"body": body}))
+        Dimensional(**(SHARED | change | {"body": body}))
 
     assert said in str(told.value)
 

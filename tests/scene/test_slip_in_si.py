@@ -77,6 +77,6 @@ def test_a_sweep_over_frequency_at_constant_acceleration_needs_nothing_linked() 
 )
 def test_a_body_does_not_go_with_it(changes: Any, said: str) -> None:
     with pytest.raises(WrongValues) as caught:
-        fl.Dimensional(**{"belt_speed": "1 mm/s", "slip": SLIP} | changes)
+        fl.Scene.si(**{"belt_speed": "1 mm/s", "slip": SLIP} | changes)
 
-    assert str(caught.value).startswith(f"Dimensional: {said}")
+    assert str(caught.value).startswith(f"Scene.si: {said}")

@@ -11,6 +11,7 @@ from hypothesis import given
 from strategies import sizes
 
 import frictionlab as fl
+from frictionlab.scene.dimensional import Dimensional
 from frictionlab.values.notes import WrongValues
 
 BODY: dict[str, Any] = {
@@ -22,8 +23,8 @@ BODY: dict[str, Any] = {
 }
 
 
-def body(*without: str, **changes: Any) -> fl.Dimensional:
-    return fl.Dimensional(**{key: value for key, value in BODY.items() if key not in without}, **changes)
+def body(*without: str, **changes: Any) -> Dimensional:
+    return Dimensional(**{key: value for key, value in BODY.items() if key not in without}, **changes)
 
 
 @given(sizes(1e-3, 1e4), sizes(1e-2, 1e5), sizes(1e-4, 10.0), sizes(1e-2, 1e5), sizes(1e-4, 10.0))
@@ -31,13 +32,13 @@ def test_a_natural_frequency_and_a_damping_ratio_are_a_spring_and_a_dashpot(
     mass: float, omega: float, ratio: float, across: float, its_ratio: float
 ) -> None:
     shared = {"mass_kg": mass, "length_m": 1e-3, "belt_speed_m_per_s": 0.1}
-    told = fl.Dimensional(
+    told = Dimensional(
         **shared,
         natural_frequency_rad_per_s=omega,
         damping_ratio=ratio,
         transverse={"natural_frequency_rad_per_s": across, "damping_ratio": its_ratio},
     )
-    springs = fl.Dimensional(
+    springs = Dimensional(
         **shared,
         stiffness_N_per_m=mass * omega**2,
         damping_N_s_per_m=2 * ratio * mass * omega,
@@ -105,7 +106,7 @@ def test_one_of_the_numbers_is_asked_for(without: list[str], changes: dict[str, 
     with pytest.raises(WrongValues) as caught:
         body(*without, **changes)
 
-    assert str(caught.value).startswith(f"Dimensional: {said}")
+    assert str(caught.value).startswith(f"Scene.si: {said}")
     assert len(caught.value.mistakes) == 1
 
 

@@ -123,7 +123,7 @@ def test_an_override_takes_the_place_of_the_same_value_under_its_other_key() -> 
 
 def test_a_law_made_in_python_takes_texts_where_the_scene_has_units() -> None:
     body = {**BODY, "belt_speed": "5 mm/s", "drive": {"amplitude": "20 N", "frequency": "60 Hz"}}
-    scene = fl.Scene(dimensional=fl.Dimensional(**body))
+    scene = fl.Scene.si(**body)
     text, number = (fl.Dahl(mu=0.3, presliding_length=each) for each in ("1 um", 1e-6))
     plain = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
 

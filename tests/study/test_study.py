@@ -614,7 +614,7 @@ def test_every_property_of_the_schema_says_what_it_means() -> None:
     assert len(made) > 300
     assert [path for path, each in made.items() if not each.get("description")] == []
     assert made["/$defs/Drive/unbalance"]["description"].endswith("amplitude unbalance*frequency^2")
-    phases = [made[f"/$defs/{part}/phase"] for part in ("DimensionalDrive", "Drive")]
+    phases = [made[f"/$defs/{part}/phase"] for part in ("DriveInSI", "Drive")]
     assert phases[0]["description"] == phases[1]["description"]
 
 

@@ -89,7 +89,7 @@ def test_what_a_scene_in_si_units_shows_makes_it_again(more: dict[str, Any]) -> 
     scene = fl.Scene(dimensional=BODY | more)
 
     assert again(scene) == scene
-    assert repr(scene).startswith("Scene(dimensional=Dimensional(mass_kg=1, ")
+    assert repr(scene).startswith("Scene.si(mass_kg=1, ")
     assert "gravity" not in repr(scene)
 
 

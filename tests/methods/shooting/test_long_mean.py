@@ -241,16 +241,15 @@ def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():
 
 @deep("chaos of a stiff bristle takes many steps")
 def test_a_start_that_passes_by_an_orbit_which_repels_is_followed_on_to_its_long_mean():
-    changing = fl.DimensionalNormalLoadVariation(amplitude=0.5, frequency="40 kHz", contact="constant")
-    tip = fl.Dimensional(
+    tip = fl.Scene.si(
         mass="1e-11 kg",
         stiffness="1 N/m",
         damping_ratio=0.01,
         normal_load="10 nN",
         belt_speed="1 um/s",
-        normal_load_variation=changing,
+        normal_load_variation={"amplitude": 0.5, "frequency": "40 kHz", "contact": "constant"},
     )
-    state = fl.steady_state(fl.Scene(dimensional=tip), fl.Dahl(mu=0.1, presliding_length=0.3e-9))
+    state = fl.steady_state(tip, fl.Dahl(mu=0.1, presliding_length=0.3e-9))
 
     assert state.status == "ok"
     assert "chaotic" in state.reason

@@ -38,9 +38,8 @@ napoleon_preprocess_types = True  # classes of frictionlab lead to their entry
 napoleon_type_aliases = {
     name: f":class:`~frictionlab.{module}.{name}`"
     for name, module in {
-        "BestWaveform": "analysis.fit.best_waveform",
+        "DriftSpeed": "runner.drift",
         "Equivalent": "analysis.fit.equivalent",
-        "Experiments": "analysis.fit.equivalent",
         "FittedLaws": "analysis.fit.result",
         "Needs": "analysis.needs.needs",
         "Run": "report.run",

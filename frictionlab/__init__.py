@@ -56,11 +56,10 @@ _HOMES = {
     "Transverse": "frictionlab.scene.scene",
     "TransverseSlip": "frictionlab.scene.scene",
     "attractors": "frictionlab.runner.api",
-    "best_waveform": "frictionlab.analysis.fit.best_waveform",
     "compare": "frictionlab.report.run",
     "curve": "frictionlab.runner.api",
     "describing_function": "frictionlab.analysis.response",
-    "discriminate": "frictionlab.analysis.fit.equivalent",
+    "drift_speed": "frictionlab.runner.drift",
     "equivalent": "frictionlab.analysis.fit.equivalent",
     "fit": "frictionlab.analysis.fit.api",
     "impedance": "frictionlab.analysis.response",
@@ -77,6 +76,14 @@ _HOMES = {
 _OTHER_NAMES = {"Dupont": "ElastoPlastic"}
 """Second names of public classes."""
 
+_RECIPE = "docs/fit.md has a recipe of a dozen lines"
+_GONE = {
+    "Dimensional": "write fl.Scene.si(mass=..., ...)",
+    "discriminate": _RECIPE,
+    "best_waveform": _RECIPE,
+}
+"""Names that were public, and what takes their place."""
+
 __all__ = ["__version__", *sorted(_HOMES)]
 
 
@@ -86,6 +93,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version  # with email and zipfile, half of the time of an import
 
         return version("frictionlab")
+    if name in _GONE:
+        raise AttributeError(f"fl.{name} is gone: {_GONE[name]}")
     if name not in _HOMES:
         what = f"module 'frictionlab' has no attribute {name!r}"
         raise AttributeError(what, name=name, obj=import_module(__name__))  # Python then says what was meant

@@ -116,6 +116,8 @@ def body(source: Source, planar: bool, mu: float) -> Keys:
         keys["transverse"] = {"natural_frequency": natural, "damping_ratio": log(source, 0.05, 1.0)}
     if "drive" in shakes:
         keys["drive"] = {"amplitude": push, "frequency": frequency} | oscillation(source, False)
+        if not planar and source.among((True, False, False)):
+            keys["drive"]["offset"] = source.uniform(-2.0, 2.0) * push
         if planar and source.among((True, False)):
             keys["drive"]["direction"] = source.uniform(-180.0, 180.0)
         elif planar:

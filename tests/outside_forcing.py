@@ -120,9 +120,15 @@ def forcing(scene: dict[str, Any]) -> Forcing:
     edges = [0.0]
     edges += [b for a, b in itertools.pairwise(corners) if b - a > 1e-12 * period]
     edges[-1] = period
-    pieces = np.zeros((len(edges) - 1, 5, 2))
+    pieces, drive = np.zeros((len(edges) - 1, 5, 2)), scene.get("drive")
     pieces[:, BELT1, 0] = scene["belt_speed"]
     pieces[:, NORMAL, 0] = scene.get("normal_load", 1.0)
+    for part, first, second in (
+        (drive, LOAD1, LOAD2),
+        ((scene.get("transverse") or {}).get("load"), LOAD2, LOAD1),
+    ):
+        for signal, weight in _along(part or {}, first, second).items():
+            pieces[:, signal, 0] += weight * (part or {}).get("offset", 0.0)
     which, sines = [], []
     for wave in waves:
         for signal, weight in wave.weights.items():
@@ -148,6 +154,12 @@ def base_frequency(scene: dict[str, Any]) -> float:
     return next(scene[part]["frequency"] for part in parts if "frequency" in (scene.get(part) or {}))
 
 
+def _along(part, first, second, sign=1.0):
+    angle = math.radians(part.get("direction", 0.0))
+    weights = {first: sign * math.cos(angle), second: sign * math.sin(angle)}
+    return weights if part.get("direction") else {first: sign}
+
+
 def _waves(scene, base, ratios):
     def wave(part, weights, amplitude):
         ratio = Fraction(part.get("frequency_ratio", 1)).limit_denominator(1000)
@@ -162,20 +174,15 @@ def _waves(scene, base, ratios):
             return part["amplitude"]
         return part["unbalance"] * base**2
 
-    def along(part, first, second, sign=1.0):
-        angle = math.radians(part.get("direction", 0.0))
-        weights = {first: sign * math.cos(angle), second: sign * math.sin(angle)}
-        return weights if part.get("direction") else {first: sign}
-
     if drive := scene.get("drive"):
-        yield wave(drive, along(drive, LOAD1, LOAD2), force(drive))
+        yield wave(drive, _along(drive, LOAD1, LOAD2), force(drive))
     if load := (scene.get("transverse") or {}).get("load"):
         yield wave(load, {LOAD2: 1.0}, force(load))
     if slip := scene.get("slip"):
-        yield wave(slip, along(slip, BELT1, BELT2, -1.0), slip["velocity_amplitude"])
+        yield wave(slip, _along(slip, BELT1, BELT2, -1.0), slip["velocity_amplitude"])
     if slip := scene.get("transverse_slip"):
         yield wave(slip, {BELT2: -1.0}, slip["velocity_amplitude"])
     if belt := scene.get("belt_vibration"):
-        yield wave(belt, along(belt, BELT1, BELT2), belt["velocity_amplitude"])
+        yield wave(belt, _along(belt, BELT1, BELT2), belt["velocity_amplitude"])
     if normal := scene.get("normal_load_variation"):
         yield wave(normal, {NORMAL: 1.0}, scene.get("normal_load", 1.0) * normal["amplitude"])

@@ -64,7 +64,7 @@ EDITS = [
     ("drive: {unbalance: 10, frequency: 1}", "drive: {frequency: 1}",
      "8:3: scene.drive: give exactly one of unbalance and amplitude"),
     ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, period: 6}",
-     "8:40: scene.drive.period: unknown key; allowed: unbalance, amplitude, phase, waveform, frequency, direction"),
+     "8:40: scene.drive.period: unknown key; allowed: unbalance, amplitude, phase, waveform, offset, frequency, direction"),
     ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, waveform: {square: {duty: 1}}}",
      "8:66: scene.drive.waveform.square.duty: must be > 0 and < 1, got 1"),
     ("drive: {unbalance: 10, frequency: 1}", "drive: 5", "8:10: scene.drive: must be a mapping (key: value), got 5"),

@@ -15,12 +15,12 @@ import matplotlib
 import pytest
 
 import frictionlab as fl
-from frictionlab.analysis.fit.best_waveform import BestWaveform
-from frictionlab.analysis.fit.equivalent import Equivalent, Experiments
+from frictionlab.analysis.fit.equivalent import Equivalent
 from frictionlab.analysis.fit.result import FittedLaws
 from frictionlab.analysis.needs.needs import Needs
+from frictionlab.runner.drift import DriftSpeed
 
-RESULTS = fl.Run, fl.SteadyState, Needs, FittedLaws, Equivalent, Experiments, BestWaveform
+RESULTS = fl.Run, fl.SteadyState, Needs, FittedLaws, Equivalent, DriftSpeed
 """What users are handed: every method and property of theirs is public."""
 METHODS = {fl.Scene: ["with_"], fl.Study: ["of", "to_yaml", "cases"]}
 HANDED = *RESULTS, fl.Study

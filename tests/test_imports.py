@@ -85,7 +85,7 @@ OUTSIDE = {
         "matplotlib": "charts report.run bench.charts bench.account",  # of run the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",
-        "scipy": "theory motion methods.reduced curves analysis bench.peers",
+        "scipy": "theory motion methods.reduced curves runner analysis bench.peers",
         "heyoka": "bench.peers",
         "numbalsoda": "bench.peers",
         "jinja2": "report",

@@ -27,8 +27,8 @@ from frictionlab.bench.charts.failures import failures_figure
 from frictionlab.bench.charts.orders import orders_figure, stability_figure
 from frictionlab.bench.curve import CurveResult, ModelsResult
 from frictionlab.bench.failures import FailureResult
+from frictionlab.bench.listed import PEERS
 from frictionlab.bench.orders import OrdersResult
-from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import SectionResult, file_stem
 from frictionlab.bench.report import TARGETS, cell_text, fastest, left_out, readable_rows
 from frictionlab.bench.stability import StabilityResult

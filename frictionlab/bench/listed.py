@@ -6,6 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from frictionlab.bench.curve import BenchCurve
+from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.peers.equations import ScipyBristle, ScipySteps
+from frictionlab.bench.peers.heyoka_taylor import Heyoka
+from frictionlab.bench.peers.numbalsoda_bristle import Numbalsoda
+from frictionlab.bench.peers.scipy_events import ScipyEvents
 from frictionlab.bench.record import Section, SectionResult
 from frictionlab.bench.report import left_out
 from frictionlab.compile.call import compiling_at_once
@@ -70,3 +75,9 @@ def bench_summary(done: Sequence[SectionResult]) -> str:
     }
     told = [each.summary() for each in done]
     return "\n\n".join([*told, left_out(missing)] if missing else told)
+
+
+PEERS: dict[str, type[Peer]] = {
+    peer.name: peer for peer in (ScipySteps, ScipyEvents, ScipyBristle, Heyoka, Numbalsoda)
+}
+"""Other libraries by the names that a list gives them."""

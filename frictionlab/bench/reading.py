@@ -15,10 +15,9 @@ from pydantic import AfterValidator
 from frictionlab.bench.curve import BenchCurve, BenchedModel, ModelsSection
 from frictionlab.bench.failure_maps import FailureMap, MapTruth, NamedPoint
 from frictionlab.bench.failures import failure_sections
-from frictionlab.bench.listed import Bench
+from frictionlab.bench.listed import PEERS, Bench
 from frictionlab.bench.orders import OrdersSection
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import (
     FILLED,
     AtLeastOne,

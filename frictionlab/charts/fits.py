@@ -11,7 +11,6 @@ Impedance of a contact over frequency: modulus and phase (Bode), and its path in
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -137,43 +136,6 @@ def equivalent_figure(table: pd.DataFrame, curves: pd.DataFrame) -> Figure:
             axes.set(xlabel=word(f"scene.{over}"), ylabel="distance of mean friction")
             axes.set_ylim(bottom=0.0)
             axes.legend()
-    return sheet.figure
-
-
-def experiments_figure(table: pd.DataFrame, inputs: Sequence[str]) -> Figure:
-    """The smallest distance between two models over the standard error; the best experiment is filled."""
-    with mpl.rc_context(STYLE):
-        sheet = Sheet.blank(len(inputs), Heading())
-        for place, name in enumerate(inputs):
-            axes = sheet.axes(place)
-            look = {"color": CYCLE[0]["color"], "linestyle": "none", "marker": "o"}
-            axes.plot(table[name], table["apart"], markersize=3.0, markerfacecolor="white", **look)
-            axes.plot(table[name].iloc[:1], table["apart"].iloc[:1], markersize=6.0, **look)
-            axes.set(xlabel=word(f"scene.{name}"), ylabel=r"smallest distance over $\sigma$")
-            axes.set_ylim(bottom=0.0)
-    return sheet.figure
-
-
-_BELT: Any = {"color": "0.5", "linewidth": 0.7}
-
-
-def best_waveform_figure(motions: Mapping[str, pd.DataFrame], belt_speed: float, slips: bool) -> Figure:
-    """motions: by the entry of the legend, a period each, with the drive. slips: whether the drive is the slip."""
-    entries = [
-        Line2D([], [], label=name, **look) for name, look in zip(motions, CYCLE[: len(motions)], strict=True)
-    ]
-    with mpl.rc_context(STYLE):
-        sheet = Sheet.blank(1 if slips else 2, Heading(), [*entries, Line2D([], [], label="belt", **_BELT)])
-        force = None if slips else sheet.axes(0)
-        velocity = sheet.axes(0 if slips else 1)
-        for motion, look in zip(motions.values(), CYCLE, strict=False):
-            turns = motion["tau"] / motion["tau"].iloc[-1]
-            velocity.plot(turns, motion["slip"] + belt_speed, **look)
-            if force is not None:
-                force.plot(turns, motion["drive"], **look)
-                force.set(xlabel="time [periods]", ylabel="drive")
-        velocity.axhline(belt_speed, **_BELT)
-        velocity.set(xlabel="time [periods]", ylabel="velocity along the belt")
     return sheet.figure
 
 

@@ -99,6 +99,7 @@ class ModelWord(StrEnum):
         "harmonics by samples",
         "harmonics of motion and of friction balanced on samples of a period, those beyond left out",
     )
+    SOFT_SPRINGS = "soft springs", "a body without a spring, as the limit of four ever softer ones"
     EQUIVALENT_DRIVE = "equivalent drive", "the belt's vibration as the drive that is equivalent to it"
     DAMPED = (
         "unique: damped",

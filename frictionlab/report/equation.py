@@ -20,6 +20,7 @@ _SI = {
     "frequency": "frequency_rad_per_s",
     "unbalance": "unbalance_kg_m",
     "amplitude": "amplitude_N",
+    "offset": "offset_N",
     "belt_speed": "belt_speed_m_per_s",
 }
 
@@ -155,7 +156,9 @@ def _coefficients(n: _Numbers, axis: int) -> tuple[Markup, Markup, Markup]:
     if n.in_si:
         return n.product("mass_kg"), _dashpot(n, part), n.product(*_spring(n, part))
     natural = [] if axis == 1 else ["transverse.natural_frequency"]
-    return Markup("1"), n.product(f"{part}damping_ratio", *natural, factor=2.0), n.product(*natural, *natural)
+    held = 0.0 if not part and n.values.get("spring") is False else 1.0
+    damping = n.product(f"{part}damping_ratio", *natural, factor=2.0)
+    return Markup("1"), damping, n.product(*natural, *natural, factor=held)
 
 
 def _spring(n: _Numbers, part: str) -> tuple[str, ...]:
@@ -196,6 +199,8 @@ def _loads(n: _Numbers, axis: int) -> list[Markup]:
         found.append(Markup("{}{}").format(_force(n, "drive"), turned))
     if axis == 2 and n.has("transverse.load"):
         found.append(_force(n, "transverse.load"))
+    part = "drive" if axis == 1 else "transverse.load"
+    found.append(n.product(n.path(part, "offset")) if n.has(n.path(part, "offset")) else Markup(""))
     return [each for each in found if each]
 
 
@@ -212,6 +217,8 @@ def _along(n: _Numbers, part: str, axis: int) -> Markup | None:
 def _force(n: _Numbers, part: str) -> Markup:
     """The size of a load times its wave; an unbalance grows with the square of the frequency."""
     unbalance = n.path(part, "unbalance")
+    if not n.has(unbalance) and not n.has(n.path(part, "amplitude")):
+        return Markup("")
     if not n.has(unbalance):
         return _wave(n, part, "amplitude")
     return _times(n.product(unbalance, n.frequency, n.frequency), _form(n, part))

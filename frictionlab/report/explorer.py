@@ -167,7 +167,13 @@ def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
         return None
     scene = scene_of(curve.rows.iloc[0].to_dict())
     load = 0.0 if scene.drive is None else scene.drive.size(scene.frequency)
-    if scene.degrees_of_freedom != 1 or not scene.is_harmonic or not load or not scene.damping_ratio:
+    if (
+        scene.degrees_of_freedom != 1
+        or scene.is_free
+        or not scene.is_harmonic
+        or not load
+        or not scene.damping_ratio
+    ):
         return None
     rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0.0]
     left = rows["normalized_friction"] != 0.0

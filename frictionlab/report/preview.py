@@ -10,7 +10,7 @@ import pandas as pd
 from frictionlab.runner.summary import mean_span
 from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import in_words
-from frictionlab.scene.as_written import without_unit
+from frictionlab.scene.dimensional import without_unit
 from frictionlab.values.columns import SHOWN_IN, belt_speed
 
 MOST_CURVES = 20

@@ -37,7 +37,7 @@ def _kind(study: Study) -> str:
         return "Prescribed slip: a body whose slip over the belt is given, not computed."
     if scene.undriven:
         shaken = "which nothing shakes"
-    elif scene.drive is None:
+    elif not scene.is_driven:
         shaken = "without a load"
     elif drive.is_turned:
         shaken = f"shaken {drive.direction}"
@@ -46,14 +46,17 @@ def _kind(study: Study) -> str:
     kind = (
         "one degree of freedom" if scene.degrees_of_freedom == 1 else "two degrees of freedom, in the plane"
     )
-    return f"A body with {kind}, on a moving belt, {shaken}."
+    loose = ", that no spring holds along the belt" if scene.is_free else ""
+    return f"A body with {kind}{loose}, on a moving belt, {shaken}."
 
 
 def _shapes(study: Study) -> Iterator[str]:
     """A sentence for every load, slip, belt vibration and normal load that is more than a sine along the belt."""
     drive, load = _Shaking(study, "drive"), _Shaking(study, "transverse.load")
     belt, normal = _Shaking(study, "belt_vibration"), _Shaking(study, "normal_load_variation")
-    if drive.part and drive.is_told:
+    if (drive.part and drive.part.offset) or (load.part and load.part.offset):
+        yield "A constant force pushes it."
+    if study.scene.is_driven and drive.is_told:
         yield f"The load{'' if drive.is_turned else ' along x1'} varies {drive.wave}."
     if load.part and load.is_told:
         yield f"The load across the belt varies {load.wave}."

@@ -17,6 +17,7 @@ from frictionlab.runner.arguments import Existing
 from frictionlab.runner.curve_loads import speeds_to_add
 from frictionlab.runner.files import FolderError, check_free
 from frictionlab.runner.folder import check_page, run_folder
+from frictionlab.scene.free_body import bound
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import registry
 from frictionlab.study.grid import StudyCurve
@@ -134,12 +135,12 @@ def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
     tolerance, about = study.tolerance, study.chosen_range is not None
     first, refusals, models = curves[0], Counter[str](), Counter[str]()
     for curve in curves:
-        method, law = curve.method.method, curve.law
-        reasons = method.refusals(curve.scenes, law)
+        method, law, scenes = curve.method.method, curve.law, bound(curve.scenes)
+        reasons = method.refusals(scenes, law)
         refusals.update(reason for reason in reasons if reason is not None)
         able = [place for place, reason in enumerate(reasons) if reason is None]
         if able:
-            models[_model(method, curve.scenes.taken(able), law, tolerance)] += len(able)
+            models[_model(method, scenes.taken(able), law, tolerance)] += len(able)
     given = (
         [] if about else [(curve.scenes, curve.law) for curve in curves]
     )  # chosen ones are not to be added to

@@ -15,6 +15,7 @@ from frictionlab.curves.ends import Loads
 from frictionlab.curves.interpolant import LEAST_POINTS, NO_SHARE, STEP, WIDEST_GAP
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner.part import force_amplitude
+from frictionlab.scene.free_body import bound
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.signals import Signal
@@ -25,7 +26,8 @@ from frictionlab.theory.prescribed import mean_direction
 from frictionlab.theory.rest import can_hold
 from frictionlab.values.quantities import Floats
 
-KEYS = "waveform", "direction", "frequency_ratio", "body", "belt_vibration", "normal_load_variation"
+_ADDED = "body", "belt_vibration", "normal_load_variation"
+KEYS = "waveform", "direction", "frequency_ratio", "offset", "spring", *_ADDED
 LOPSIDED = (
     "loads, belt, normal load or springs are not mirrored half a period later: the limit of friction at vanishing "
     "belt speed is not known"
@@ -62,7 +64,7 @@ def scene_of(given: Mapping[str, Any]) -> Scene:
 
 def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
     """The loads of a row; law: as methods received it, None where it is not known."""
-    scene = scene_of(given)
+    scene = bound(Scenes.of([scene_of(given)]))[0]
     prescribed = scene.degrees_of_freedom == 0
     remembers = law is not None and law.memory_kind != "none"
     along = (0j if prescribed else scene.mass().force) if scene.is_harmonic else 0j
@@ -85,6 +87,7 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
 
 def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
     """Whether a curve of this scene has a known mean friction at vanishing belt speed."""
+    scene = bound(Scenes.of([scene]))[0]
     varied = scene.belt_vibration is not None or scene.normal_load_variation is not None
     if not scene.is_harmonic or varied or scene.body_terms or not law.obeys("oddness"):
         return not _start(scene, law)[1]

@@ -80,9 +80,9 @@ def _speed_scale(curve: StudyCurve) -> float:
 
 
 def _is_followed(curve: StudyCurve) -> bool:
-    """Whether a mass is driven, at more than one belt speed."""
+    """Whether a mass on a spring is driven, at more than one belt speed."""
     scene = curve.scenes.scene
-    return scene.degrees_of_freedom > 0 and not scene.undriven and len(curve.rows) > 1
+    return scene.degrees_of_freedom > 0 and not scene.undriven and not scene.is_free and len(curve.rows) > 1
 
 
 def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
@@ -176,7 +176,7 @@ def _rows(
     units = given.scales_of(curve.rows[0])
     speeds, places = np.unique(curve.scenes.belt_speeds, return_index=True)
     scenes, law, method = curve.scenes.taken(places), curve.law, curve.method.method
-    if method.refusal(scenes[0], law) is not None:
+    if scenes.scene.is_free or method.refusal(scenes[0], law) is not None:
         return
     numbers = dict.fromkeys(range(len(speeds)), 0)
     for state in in_own_lengths(method.states, scenes, law, tolerance, starts):

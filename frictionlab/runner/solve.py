@@ -20,6 +20,7 @@ from frictionlab.laws.faults import (
     text_of_error,
 )
 from frictionlab.methods.base import NOT_UNIQUE, Answers, in_own_lengths, refused
+from frictionlab.runner.free_body import solved_on_springs
 from frictionlab.runner.part import (
     Answered,
     KeptRows,
@@ -36,6 +37,8 @@ from frictionlab.values.quantities import Floats
 
 def solve(chunk: Chunk) -> Part:
     """Answer every point of a chunk. Raises BrokenPlugin; all else becomes the reason of a failed point."""
+    if chunk.scenes.scene.is_free:
+        return solved_on_springs(chunk, solve)
     return columns_answered(chunk, answer(chunk))
 
 

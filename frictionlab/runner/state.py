@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from frictionlab.motion.orbit.sample import HarmonicParts
+    from frictionlab.runner.free_body import MotionOnSprings
 
 
 NAN = float("nan")
@@ -141,13 +142,17 @@ class SteadyState:
         Friction coefficient times normal load over the amplitude of the driving force.
     presliding_ratio : float
         Presliding length over the amplitude of the motion without friction.
+    drift_speed : float
+        Speed of a free body over the plate; ``fl.drift_speed`` computes it, here it is NaN.
+    drift_speed_error : float
+        Bound on its error, NaN here, too.
     model : str
         Model that produced the number, in words such as "events"; with ``auto`` also why it was chosen.
     seconds : float
         Time spent in kernels [s].
     si : dict of str to float
         Columns in SI units by name, if the scene is given in SI units.
-    motion : OrbitOf, optional
+    motion : OrbitOf or MotionOnSprings, optional
         Orbit, computed when first used; ``orbit`` and ``harmonics`` read it.
 
     Examples
@@ -196,7 +201,9 @@ class SteadyState:
     model: str = ""
     seconds: float = NAN
     si: Mapping[str, float] = field(default_factory=dict)
-    motion: OrbitOf | None = field(default=None, compare=False)
+    drift_speed: float = NAN
+    drift_speed_error: float = NAN
+    motion: OrbitOf | MotionOnSprings | None = field(default=None, compare=False)
 
     def __repr__(self) -> str:
         """The mean with its error, or what there is instead of one and why."""

@@ -11,7 +11,8 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.engine import within
-from frictionlab.runner.part import Part, si_columns, si_scales
+from frictionlab.runner.free_body import MotionOnSprings
+from frictionlab.runner.part import Answered, Part, si_columns, si_scales
 from frictionlab.runner.pieces import Chunk, Task
 from frictionlab.runner.solve import answer, columns_answered, solve
 from frictionlab.runner.state import OrbitOf, SteadyState
@@ -65,13 +66,24 @@ def steady_state(
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     task = Task(given_tolerance(tolerance), columns=selected([ALL]))
     chunk = Chunk(Scenes.of([scene]), law_in_scene(law, scene), ready, task)
-    (found,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
-    part = within(inf, columns_answered, chunk, [found])
+    motion: OrbitOf | MotionOnSprings
+    if scene.is_free:
+        part, motion = within(inf, solve, chunk), MotionOnSprings(chunk, _motion_of)
+    else:
+        (found,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
+        part, motion = within(inf, columns_answered, chunk, [found]), _motion_in(found, chunk)
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     scales = {} if scene.dimensional is None else si_scales(scene)
     words = {name: in_si_words(column[0], scales) for name, column in part.text.items()}
-    motion = OrbitOf(found.answers.orbit, scene, chunk.law)
     return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
+
+
+def _motion_of(chunk: Chunk) -> OrbitOf:
+    return _motion_in(answer(chunk)[0], chunk)
+
+
+def _motion_in(found: Answered, chunk: Chunk) -> OrbitOf:
+    return OrbitOf(found.answers.orbit, chunk.scenes[0], chunk.law)
 
 
 def steady_states(scenes: Scenes, law: FrictionLaw, tolerance: float, columns: Sequence[str]) -> Part:

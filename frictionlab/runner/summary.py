@@ -14,7 +14,7 @@ from frictionlab.runner.expectations import Verdict
 from frictionlab.runner.results import Results
 from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import counted, in_words
-from frictionlab.scene.as_written import without_unit
+from frictionlab.scene.dimensional import without_unit
 from frictionlab.values.columns import SHOWN_IN, belt_speed
 from frictionlab.values.printable import PLUS_MINUS, with_error
 from frictionlab.values.units import in_shown_units

@@ -79,6 +79,10 @@ def trajectory(
     periods, samples = at_least_one("periods", periods), at_least_one("samples", samples)
     if initial is not None:
         scene = scene.with_(initial=initial)
+    if scene.is_free:
+        raise ValueError(
+            NO_MOTION.format(name=ready.name, why="no spring holds the body: give it a soft one")
+        )
     accuracy = given_tolerance(tolerance)
     law = law_in_scene(law, scene)
     if why := ready.refusal(scene, law):

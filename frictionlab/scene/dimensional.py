@@ -5,6 +5,9 @@ Each part of a scene is stated once, nondimensional (``parts.py``). Its SI form 
 unit behind those of numbers that have a dimension, the same limits and the same rules. Only springs,
 dashpots, mass, weight, length and the ways to give an oscillation, from which the nondimensional numbers are
 made, have keys of their own here.
+
+People write keys without a unit, and texts with one: ``belt_speed: 2 mm/s`` and ``belt_speed_m_per_s: 2 mm/s`` are
+``belt_speed_m_per_s: 0.002``. Values of a record are replaced by name or by path.
 """
 
 from __future__ import annotations
@@ -14,11 +17,11 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, Self, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.parts import (
     BY_TABLE,
     BeltVibration,
@@ -39,7 +42,7 @@ from frictionlab.scene.parts import (
     file_alone,
 )
 from frictionlab.scene.receptance import TabulatedBody, read_receptance
-from frictionlab.scene.rules import problems_of_parts, problems_of_slip, replaced_by_table
+from frictionlab.scene.rules import frequency_of, problems_of_parts, problems_of_slip, replaced_by_table
 from frictionlab.scene.units import (
     DASHPOT,
     SPRING,
@@ -53,9 +56,146 @@ from frictionlab.scene.units import (
     velocity_of,
 )
 from frictionlab.scene.waveforms import SINE
-from frictionlab.values.quantities import Finite, NonNegative, Positive, dimensions
+from frictionlab.values.notes import Unfit
+from frictionlab.values.quantities import Finite, NonNegative, Positive, Record, dimensions, given_values
+from frictionlab.values.units import in_units, quantity_in
+from frictionlab.values.validation import field_path
 
 STANDARD_GRAVITY = 9.81
+
+_SUFFIX = re.compile(
+    r"_(N_s_per_m3|N_per_m3|N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|(?<!_sq_)per_m|kg_m|kg|N|(?<!_per_)m|J|s)$"
+)
+"""Unit at the end of the key of a number, or of the name of a result."""
+_WITHOUT_SUFFIX = {"phase": "deg", "direction": "deg", "amplitude": "", "damping_ratio": ""}
+"""Units of numbers whose keys do not end in a unit."""
+
+
+class AsWritten(ScenePart):
+    """Part in SI units.
+
+    ``other_names`` maps the keys without a unit to their fields. Each tuple in ``one_of`` names alternatives,
+    of which exactly one is given, each in ``at_most_one_of`` those of which one or none is.
+    """
+
+    other_names: ClassVar[Mapping[str, str]] = {}
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    at_most_one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
+
+    if TYPE_CHECKING:  # every number may be text, and its key without a unit
+
+        def __init__(self, **values: Any) -> None: ...
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        cls.other_names = {without_unit(name): name for name in cls.model_fields if _SUFFIX.search(name)}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_in_si(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            return data
+        found = dict(_fields(data, cls))
+        for names in (*cls._needed(found), *cls.at_most_one_of):
+            _one_of(found, names, names not in cls.at_most_one_of)
+        return found
+
+    @classmethod
+    def _needed(cls, _data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
+        """Return those of ``one_of`` that these values need."""
+        return cls.one_of
+
+
+def without_unit(name: str) -> str:
+    """Return the name of a number in SI units without its unit."""
+    return _SUFFIX.sub("", name)
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit of the number of this name, or None if it may be no number."""
+    found = _SUFFIX.search(name)
+    if not found:
+        return _WITHOUT_SUFFIX.get(name)
+    unit = re.sub("^per_", "1/", found[1]).replace("_per_", "/").replace("_", " ")
+    return re.sub(r"(?<=[a-z])(\d)", r"^\1", unit)
+
+
+def in_si(key: str, name: str, value: Any) -> Any:
+    """Return the value of a field, given under a key, in SI units.
+
+    A text with a unit becomes a number; a value that is no number becomes the reason why not.
+    """
+    unit = unit_of(name)
+    if unit is None:
+        return value
+    if isinstance(value, str):
+        return in_units(value, unit)
+    if key != name and isinstance(value, Real) and not isinstance(value, bool) and value != 0:
+        kind = quantity_in(unit)
+        return Unfit(
+            value, f"{value:.6g} has no unit; give {kind} such as '{kind.example}', or the key {name}"
+        )
+    return value
+
+
+def _one_of(data: dict[str, Any], names: tuple[str, ...], is_needed: bool) -> None:
+    """Put in a message if more than one of the names is given, or none of those that are needed."""
+    given = [name for name in names if data.get(name) is not None]
+    if not given and is_needed:
+        others = f" (or {' or '.join(map(without_unit, names[1:]))})" if names[1:] else ""
+        data[names[0]] = Unfit(None, f"required key is missing{others}")
+    for name in given[1:]:
+        data[name] = Unfit(data[name], f"leave it out where {without_unit(given[0])} is given")
+
+
+def _fields(data: Mapping[str, Any], part: type[AsWritten]) -> Iterator[tuple[str, Any]]:
+    """Yield values by the names of their fields, with mistakes in the place of values given twice."""
+    for key, value in data.items():
+        name = part.other_names.get(key, key)
+        if name != key and name in data:
+            continue
+        twice = [other for other, field in part.other_names.items() if field == key and other in data]
+        yield (
+            name,
+            Unfit(value, f"is given as {twice[0]}, too: leave one of them out")
+            if twice
+            else in_si(key, name, value),
+        )
+
+
+def changed(
+    record: type[Record], held: Record, changes: Any, others: Mapping[str, Any], within: str = ""
+) -> dict[str, Any]:
+    """Return the values given for a record with changes by path, which may begin with ``within``, and by name.
+
+    Raises TypeError if the changes are no mapping.
+    """
+    if changes is not None and not isinstance(changes, Mapping):
+        raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
+    all_of_them = {path.removeprefix(within): value for path, value in {**(changes or {}), **others}.items()}
+    return with_values(given_values(held), dict(_as_fields(record, all_of_them)))
+
+
+def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield values by the paths of the fields they are for."""
+    for path, value in changes.items():
+        field = field_path(record, path)
+        key, name = (text.rpartition(".")[2] for text in (path, field))
+        yield field, value if key == name else in_si(key, name, value)
+
+
+def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a copy of nested values with some replaced, by dotted path."""
+    new = dict(tree)
+    for path, value in values.items():
+        head, _, rest = path.partition(".")
+        held = new.get(head) if rest else None
+        inside = given_values(held) if isinstance(held, Record) else held
+        new[head] = (
+            with_values(inside if isinstance(inside, Mapping) else {}, {rest: value}) if rest else value
+        )
+    return new
 
 
 class PartInSI(AsWritten):
@@ -141,7 +281,8 @@ class _Sprung(PartInSI):
         Damping ratio of the motion [-].
     """
 
-    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING, DASHPOT)
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING,)
+    at_most_one_of: ClassVar[tuple[tuple[str, ...], ...]] = (DASHPOT,)
     stiffness_N_per_m: Positive | None = None
     natural_frequency_rad_per_s: Positive | None = None
     damping_N_s_per_m: NonNegative | None = None
@@ -227,7 +368,7 @@ def _in_si(part: type[ScenePart], base: type[PartInSI] = PartInSI, **inside: Any
     }
     name = f"{part.__name__}InSI"
     made = create_model(name, __base__=base, __module__=__name__, __doc__=_documented(part), **fields)
-    made.nondimensional, made.alternatives = part, part.alternatives
+    made.nondimensional, made.alternatives, made.alone = part, part.alternatives, part.alone
     globals()[name] = made  # where pickle looks for it
     return made
 
@@ -245,9 +386,10 @@ def _documented(part: type[ScenePart]) -> str:
 class InSI(PartInSI):
     """Body on a moving belt, shaken, in SI units, as ``Scene.si`` makes it; ``Dimensional`` has its parts, too."""
 
-    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (("mass_kg",), SPRING, DASHPOT)
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (("mass_kg",), SPRING)
+    at_most_one_of: ClassVar[tuple[tuple[str, ...], ...]] = (DASHPOT,)
     mass_kg: Positive | None = None
-    stiffness_N_per_m: Positive | None = None
+    stiffness_N_per_m: NonNegative | None = None
     natural_frequency_rad_per_s: Positive | None = None
     damping_N_s_per_m: NonNegative | None = None
     damping_ratio: NonNegative | None = None
@@ -279,10 +421,11 @@ class InSI(PartInSI):
             return found
         if across is not None:
             found["transverse"] |= {
-                "natural_frequency": math.sqrt(stiffness_of(across, mass) / stiffness_of(self, mass)),
+                "natural_frequency": scales.time / time_of(across, mass),
                 "damping_ratio": damping_ratio_of(across, mass),
             }
-        return found | {"damping_ratio": damping_ratio_of(self, mass)}
+        spring = {"spring": False} if self.is_free else {}
+        return found | spring | {"damping_ratio": damping_ratio_of(self, mass)}
 
     @classmethod
     def _needed(cls, data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
@@ -292,6 +435,8 @@ class InSI(PartInSI):
     def _one_scene(self) -> Self:
         both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
+        if self.is_free and self.damping_ratio is not None:
+            twice.append("damping_ratio: is of a spring, and stiffness is 0: give damping")
         others = self._of_slip() if self.is_prescribed else [*self._of_table(), *problems_of_parts(self)]
         problems = [*twice, *others]
         if not problems:
@@ -342,7 +487,15 @@ class InSI(PartInSI):
             return Units(length, math.sqrt(mass / stiffness), stiffness * length, mass)
         if mass is None:
             return Units(length, 1.0 / self.frequency, self.load)
-        return Units(length, time_of(self, mass), stiffness_of(self, mass) * length, mass)
+        time = time_of(self, mass)
+        return Units(
+            length, time, mass * length / time**2 if self.is_free else stiffness_of(self, mass) * length, mass
+        )
+
+    @property
+    def is_free(self) -> bool:
+        """True if no spring holds the body along the belt."""
+        return self.stiffness_N_per_m == 0.0
 
     @property
     def is_prescribed(self) -> bool:
@@ -358,10 +511,7 @@ class InSI(PartInSI):
     @property
     def frequency(self) -> float:
         """Frequency of the drive, or of the part that gives it [rad/s]; 1 if no part does."""
-        slips = self.slip, self.transverse_slip
-        parts: tuple[Any, ...] = (self.drive, *slips, self.belt_vibration, self.normal_load_variation)
-        found = (part.frequency_rad_per_s for part in parts if part is not None)
-        return next((float(frequency) for frequency in found if frequency is not None), 1.0)
+        return frequency_of(self)
 
     @property
     def load(self) -> float:

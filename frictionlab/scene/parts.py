@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -34,20 +35,34 @@ from frictionlab.values.quantities import Finite, NonNegative, Positive, Record
 class ScenePart(Record):
     """Part of a scene.
 
-    ``alternatives`` names fields of which exactly one is given; it is empty if there are none.
+    ``alternatives`` names fields of which exactly one is given, or none where ``alone`` is; both are empty if
+    there are none.
     """
 
     alternatives: ClassVar[tuple[str, ...]] = ()
+    alone: ClassVar[str] = ""
 
     @classmethod
     def key(cls, name: str) -> str:
         """Return the name in this class of a nondimensional field; in SI units it ends in the unit."""
         return name
 
+    @model_validator(mode="before")
+    @classmethod
+    def _without_frequency(cls, data: Any) -> Any:
+        """Leave the frequency out of what does not change in time."""
+        if not cls.alone or not isinstance(data, Mapping) or data.get(cls.key(cls.alone)) is None:
+            return data
+        frequency, sizes = cls.key("frequency"), map(cls.key, cls.alternatives)
+        lacks = frequency in cls.model_fields and all(data.get(key) is None for key in sizes)
+        return {frequency: None, **data} if lacks else data
+
     @model_validator(mode="after")
     def _one_of_the_alternatives(self) -> Self:
         keys = [self.key(name) for name in self.alternatives]
-        if keys and sum(getattr(self, key) is not None for key in keys) != 1:
+        count = sum(getattr(self, key) is not None for key in keys)
+        enough = 0 if self.alone and getattr(self, self.key(self.alone)) is not None else 1
+        if keys and not enough <= count <= 1:
             raise ValueError(f"give exactly one of {' and '.join(keys)}")
         return self
 
@@ -67,6 +82,8 @@ class _Force(ScenePart):
         Waveform: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
         {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
+    offset : float, optional
+        Constant force beside the periodic one [K_1 L]; zero if left out.
 
     References
     ----------
@@ -74,13 +91,15 @@ class _Force(ScenePart):
     """
 
     alternatives: ClassVar[tuple[str, ...]] = ("unbalance", "amplitude")
+    alone: ClassVar[str] = "offset"
     unbalance: Annotated[NonNegative, UNBALANCE] | None = None
     amplitude: Annotated[NonNegative, FORCE] | None = None
     phase: Finite = 0.0
     waveform: Waveform | None = None
+    offset: Annotated[Finite, FORCE] | None = None
 
     def size(self, frequency: float) -> float:
-        """Return the amplitude by which the waveform is multiplied.
+        """Return the amplitude by which the waveform is multiplied; 0 of an offset alone.
 
         Parameters
         ----------
@@ -92,9 +111,7 @@ class _Force(ScenePart):
         float
             Amplitude of the force [K_1 L].
         """
-        size = self.amplitude if self.unbalance is None else self.unbalance * frequency**2
-        assert size is not None
-        return size
+        return self.amplitude or 0.0 if self.unbalance is None else self.unbalance * frequency**2
 
     def phasor(self, frequency: float) -> complex:
         """Compute the phasor F of a sine Im(F exp(i frequency tau)).
@@ -127,8 +144,12 @@ class Drive(_Force):
         Waveform: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
         {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
-    frequency : float, > 0
+    offset : float, optional
+        Constant force beside the periodic one [K_1 L], such as the weight on an incline; zero if left out. It
+        may stand alone where the belt or the normal load vibrates.
+    frequency : float, > 0, optional
         Frequency of the drive [omega_1]; other vibrations have the same frequency or a multiple p/q of it.
+        Required but for an ``offset`` alone.
     direction : float, optional
         Direction of the force, from x1 towards x2, in scenes with ``transverse`` [degrees]; along x1 if left
         out.
@@ -146,7 +167,7 @@ class Drive(_Force):
     Drive(amplitude=3, phase=90, waveform='square', frequency=2)
     """
 
-    frequency: Annotated[Positive, FREQUENCY]
+    frequency: Annotated[Positive, FREQUENCY] | None
     direction: Finite | None = None
 
 
@@ -166,6 +187,8 @@ class Load(_Force):
         Waveform: "sine", "square", "triangle", "sawtooth", {square: {duty}}, {sawtooth: {width}},
         {points: [[share, value], ...]}, {file: PATH} or {harmonics: [{order, amplitude, phase}, ...]};
         sine if left out.
+    offset : float, optional
+        Constant force across the belt [K_1 L]; zero if left out.
     frequency_ratio : float or str, > 0, optional
         Frequency of the force as a multiple of the drive's, p/q [-]; 1 if left out.
 

@@ -52,11 +52,26 @@ def _problems_of_variation(scene: Any) -> list[str]:
 
 
 def _missing_parts(scene: Any) -> Iterator[str]:
-    if scene.drive is None and scene.transverse is not None and scene.transverse.load is not None:
+    across = scene.transverse.load if scene.transverse is not None else None
+    if not _gives_frequency(scene.drive) and _varies(across):
         yield "transverse.load: needs drive for its frequency (amplitude 0 for a load across alone)"
+    others = any(getattr(scene, name) is not None for name in SHAKEN)
+    if scene.drive is not None and not others and not _gives_frequency(scene.drive):
+        yield "drive: a constant force alone only shifts where the spring holds the body: let something vibrate"
     if scene.initial is not None and scene.transverse is None:
         stray = [name for name in scene.initial.model_fields_set if name.startswith(("x2", "velocity2"))]
         yield from (f"initial.{name}: needs transverse" for name in sorted(stray))
+
+
+def _gives_frequency(drive: Any) -> bool:
+    return drive is not None and getattr(drive, drive.key("frequency")) is not None
+
+
+def _varies(force: Any) -> bool:
+    """Check whether a force is more than a constant one."""
+    return force is not None and any(
+        getattr(force, force.key(name)) is not None for name in force.alternatives
+    )
 
 
 def _directions(scene: Any) -> Iterator[str]:
@@ -74,7 +89,7 @@ def _problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
 
     ``given`` names the part that gives it: the drive if there is one.
     """
-    given = "drive" if scene.drive is not None else given
+    given = "drive" if _gives_frequency(scene.drive) else given
     parts = {name: part for name in SHAKEN if (part := getattr(scene, name)) is not None}
     if not parts:
         return
@@ -93,6 +108,13 @@ def _problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
         elif not given and not own:
             yield f"{name}.{frequency}: required where drive is left out"
             given = name
+
+
+def frequency_of(scene: Any) -> float:
+    """Return the frequency of the drive, of a prescribed slip or of another part that gives one, else 1."""
+    parts = scene.drive, scene.slip, scene.transverse_slip, *(getattr(scene, name) for name in SHAKEN)
+    found = (getattr(part, part.key("frequency")) for part in parts if part is not None)
+    return next((float(each) for each in found if each is not None), 1.0)
 
 
 def periods_of(scene: Any) -> int:

@@ -19,11 +19,10 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import ValidationError, model_validator
+from pydantic import BeforeValidator, StrictBool, ValidationError, model_validator
 
-from frictionlab.scene.as_written import changed, with_values
 from frictionlab.scene.body import Mass, Motion, with_free_motion
-from frictionlab.scene.dimensional import Dimensional
+from frictionlab.scene.dimensional import Dimensional, changed, with_values
 from frictionlab.scene.parts import (
     BENDING,
     BY_TABLE,
@@ -42,8 +41,14 @@ from frictionlab.scene.parts import (
     Transverse,
     TransverseSlip,
 )
-from frictionlab.scene.rules import periods_of, problems_of_parts, problems_of_slip, replaced_by_table
-from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
+from frictionlab.scene.rules import (
+    frequency_of,
+    periods_of,
+    problems_of_parts,
+    problems_of_slip,
+    replaced_by_table,
+)
+from frictionlab.scene.signals import FULL_TURN, Signal, Signals, constant, signal_of
 from frictionlab.scene.units import FORCE, VELOCITY
 from frictionlab.scene.varying import varying_of
 from frictionlab.scene.waveforms import SINE, form_of
@@ -98,8 +103,9 @@ def _signal(part: Any, omega: float) -> Signal:
     if part is None:
         return Signal()
     ratio = getattr(part, "frequency_ratio", None) or 1.0
-    form, keeps_mean = part.waveform or SINE, isinstance(part, Drive | Load)
-    return signal_of(form, omega * ratio, part.phase, keeps_mean).scaled(part.size(omega))
+    form, is_force = part.waveform or SINE, isinstance(part, Drive | Load)
+    signal = signal_of(form, omega * ratio, part.phase, is_force).scaled(part.size(omega))
+    return signal.plus(constant(part.offset or 0.0, FULL_TURN / omega)) if is_force else signal
 
 
 def _pair(part: Any, across: Any, omega: float) -> tuple[Signal, Signal]:
@@ -141,6 +147,11 @@ __all__ = [
 """Names of the scene and its parts."""
 
 
+def _truth(value: Any) -> Any:
+    """Return the truth value that a number of a table stands for; other values unchanged."""
+    return bool(value) if isinstance(value, float) and value in (0.0, 1.0) else value
+
+
 class Scene(ScenePart):
     """Body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
@@ -152,6 +163,9 @@ class Scene(ScenePart):
     damping_ratio : float, >= 0, optional
         Damping ratio beta_1 along the belt [-]; may exceed 1. Required unless the slip is prescribed or
         ``body`` has a receptance.
+    spring : bool, optional
+        False for a body that no spring holds along the belt: its mean friction is then what a constant outer
+        force must balance for it to stay. omega_1 is then any unit of frequency.
     normal_load : float, > 0, optional
         Normal load gamma^2 [K_1 L]: friction force per friction coefficient. Required unless the slip is
         prescribed, 1 then.
@@ -198,6 +212,7 @@ class Scene(ScenePart):
     """
 
     damping_ratio: NonNegative | None = None
+    spring: Annotated[StrictBool, BeforeValidator(_truth)] | None = None
     normal_load: Annotated[Positive, FORCE] | None = None
     belt_speed: Annotated[Finite, VELOCITY]
     drive: Drive | None = None
@@ -245,6 +260,10 @@ class Scene(ScenePart):
         required = ("normal_load",) if measured else ("damping_ratio", "normal_load")
         missing = [f"{name}: required" for name in required if getattr(self, name) is None]
         left = replaced_by_table(self, ["damping_ratio"]) if measured else []
+        if self.is_free and self.body is not None:
+            left.append("body: leave it out where no spring holds the body")
+        if self.is_free and self.undriven:
+            left.append("spring: a body that nothing shakes needs one: without it slides as the belt does")
         return [*missing, *left, *problems_of_parts(self)]
 
     def _shown(self) -> dict[str, Any]:
@@ -271,14 +290,14 @@ class Scene(ScenePart):
         ----------
         mass_kg : float, > 0, optional
             Mass M [kg]; required unless ``slip``, ``transverse_slip`` or ``body.receptance`` is given.
-        stiffness_N_per_m : float, > 0, optional
+        stiffness_N_per_m : float, >= 0, optional
             Stiffness K_1 of the spring along the belt [N/m]. With a mass exactly one is given: it or
-            ``natural_frequency_rad_per_s``.
+            ``natural_frequency_rad_per_s``. 0 for a body that no spring holds.
         natural_frequency_rad_per_s : float, > 0, optional
             Natural frequency omega_1 of the mass on that spring [rad/s].
         damping_N_s_per_m : float, >= 0, optional
-            Damping C_1 of the dashpot along the belt [N s/m]. With a mass exactly one is given: it or
-            ``damping_ratio``.
+            Damping C_1 of the dashpot along the belt [N s/m]. At most one is given: it or
+            ``damping_ratio``; 0 if both are left out.
         damping_ratio : float, >= 0, optional
             Damping ratio of the motion along the belt [-].
         length_m : float, > 0, optional
@@ -350,10 +369,20 @@ class Scene(ScenePart):
         return self.transverse_slip is not None or bool(self.slip and self.slip.direction)
 
     @property
+    def is_free(self) -> bool:
+        """True if no spring holds the body along the belt."""
+        return self.spring is False
+
+    @property
     def undriven(self) -> bool:
         """True if no load drives the mass: the period of its motion is then unknown."""
-        shaken = self.drive or self.belt_vibration or self.normal_load_variation
-        return self.degrees_of_freedom > 0 and shaken is None
+        shaken = self.is_driven or self.belt_vibration or self.normal_load_variation
+        return self.degrees_of_freedom > 0 and not shaken
+
+    @property
+    def is_driven(self) -> bool:
+        """True if ``drive`` has a frequency: if it is more than a constant force."""
+        return self.drive is not None and self.drive.frequency is not None
 
     @property
     def body_terms(self) -> list[str]:
@@ -378,11 +407,7 @@ class Scene(ScenePart):
     @property
     def frequency(self) -> float:
         """Frequency of the drive, prescribed slip or another part [omega_1]; 1 for an undriven scene."""
-        slips = self.slip or self.transverse_slip
-        for part in (self.drive, slips, self.belt_vibration, self.normal_load_variation):
-            if part is not None and part.frequency is not None:
-                return part.frequency
-        return 1.0
+        return frequency_of(self)
 
     @property
     def periods(self) -> int:
@@ -403,7 +428,8 @@ class Scene(ScenePart):
             for part in (self.belt_vibration, self.normal_load_variation)
         )
         one = load is None or load.frequency_ratio in (None, 1.0)
-        return constant and one and all(shape == SINE for shape in shapes)
+        pushed = any(part is not None and part.offset for part in (self.drive, load))
+        return constant and one and not pushed and all(shape == SINE for shape in shapes)
 
     @property
     def constant_contact(self) -> bool:
@@ -444,7 +470,14 @@ class Scene(ScenePart):
         -------
         Mass
             Coefficients of the equations of motion and phasors of the loads.
+
+        Raises
+        ------
+        ValueError
+            If no spring holds the body: it is solved on ever softer springs.
         """
+        if self.is_free:
+            raise ValueError("a body without a spring is followed on soft springs alone")
         assert self.normal_load is not None
         damping_ratio = self.damping_ratio or 0.0
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)

@@ -84,6 +84,19 @@ class Signal(NamedTuple):
         """Return the sum of two signals."""
         return Signal(self.waves + other.waves, self.pieces + other.pieces)
 
+    @property
+    def mean(self) -> float:
+        """Mean over time."""
+        total = 0.0
+        for piece in self.pieces:
+            ends = [*(line.start for line in piece.lines[1:]), piece.lines[0].start + piece.period]
+            lengths = (end - line.start for line, end in zip(piece.lines, ends, strict=True))
+            means = (
+                (line.value + 0.5 * line.slope * d) * d for line, d in zip(piece.lines, lengths, strict=True)
+            )
+            total += sum(means) / piece.period
+        return total
+
     def corners(self, end: float) -> list[float]:
         """Return its corners in [0, end)."""
         found = (
@@ -153,6 +166,11 @@ def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: floa
     even = 2.0 * math.sin(half) / frequency
     odd = -2j * (math.sin(half) - half * math.cos(half)) / frequency**2
     return 1j * turn * (value * even + slope * odd)
+
+
+def constant(value: float, period: float) -> Signal:
+    """Return a signal of one value, as a line that begins anew in every period; an empty one for zero."""
+    return Signal(pieces=(Segments(period, (Segment(0.0, value, 0.0),)),)) if value else Signal()
 
 
 def signal_of(form: Form, frequency: float, phase: float, mean: bool = True) -> Signal:

@@ -127,17 +127,19 @@ def stiffness_of(part: Any, mass: float) -> float:
 
 
 def time_of(part: Any, mass: float) -> float:
-    """Compute 1/omega [s] of the undamped mass on its spring."""
+    """Compute 1/omega [s] of the undamped mass on its spring; without one it is that of the vibration."""
     given = part.stiffness_N_per_m
+    if given == 0.0:
+        return 1.0 / float(part.frequency)
     return 1.0 / float(part.natural_frequency_rad_per_s) if given is None else math.sqrt(mass / given)
 
 
 def damping_ratio_of(part: Any, mass: float) -> float:
-    """Compute the damping ratio C/(2 sqrt(K M)) of a dashpot."""
+    """Compute the damping ratio C/(2 M omega) of a dashpot, 0 without one."""
     given = part.damping_N_s_per_m
     if given is None:
-        return float(part.damping_ratio)
-    return float(given / (2.0 * math.sqrt(stiffness_of(part, mass) * mass)))
+        return float(part.damping_ratio or 0.0)
+    return float(given * time_of(part, mass) / (2.0 * mass))
 
 
 def velocity_of(shaking: Any, frequency: float) -> float:
@@ -162,7 +164,10 @@ def own_length(scene: Any) -> float:
 def _at_rest(scene: Any) -> float:
     if scene.table is not None:
         return float(scene.load * scene.table.values[0].real)
-    return 1.0 if scene.is_prescribed else float(scene.load / stiffness_of(scene, scene.mass_kg))
+    if scene.is_prescribed:
+        return 1.0
+    stiffness = stiffness_of(scene, scene.mass_kg) or scene.mass_kg / time_of(scene, scene.mass_kg) ** 2
+    return float(scene.load / stiffness)
 
 
 def _amplitudes(scene: Any) -> Iterator[float]:
@@ -170,7 +175,7 @@ def _amplitudes(scene: Any) -> Iterator[float]:
     for part, load in ((scene, scene.drive), (across, across and across.load)):
         if load is not None:
             omega = scene.frequency * (getattr(load, "frequency_ratio", None) or 1.0)
-            force = load.amplitude_N if load.unbalance_kg_m is None else load.unbalance_kg_m * omega**2
+            force = load.amplitude_N or 0.0 if load.unbalance_kg_m is None else load.unbalance_kg_m * omega**2
             yield force * _compliance(scene, part, omega)
     for part in (belt, scene.slip, scene.transverse_slip):
         if part is not None:
@@ -185,5 +190,6 @@ def _compliance(scene: Any, part: Any, omega: float) -> float:
     mass = scene.mass_kg
     stiffness, time = stiffness_of(part, mass), time_of(part, mass)
     ratio = omega * time
-    reply = abs(complex(1.0 - ratio**2, 2.0 * damping_ratio_of(part, mass) * ratio))
-    return 1.0 / (stiffness * reply) if reply > 0.0 else 1.0 / stiffness
+    held, unit = (1.0, stiffness) if stiffness > 0.0 else (0.0, mass / time**2)
+    reply = abs(complex(held - ratio**2, 2.0 * damping_ratio_of(part, mass) * ratio))
+    return 1.0 / (unit * reply) if reply > 0.0 else 1.0 / unit

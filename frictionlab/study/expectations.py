@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from frictionlab.scene.as_written import in_si
+from frictionlab.scene.dimensional import in_si
 from frictionlab.scene.scene import Scene
 from frictionlab.study.parts import Expectation, WhereValue
 from frictionlab.study.written import column_of

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
 
-from frictionlab.scene.as_written import AsWritten, unit_of
+from frictionlab.scene.dimensional import AsWritten, unit_of
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader, registry

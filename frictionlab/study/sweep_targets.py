@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from frictionlab.scene.as_written import without_unit
+from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import DASHPOT, SPRING, SWINGS
 from frictionlab.study import registry

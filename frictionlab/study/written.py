@@ -14,7 +14,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.scene.as_written import AsWritten, in_si
+from frictionlab.scene.dimensional import AsWritten, in_si
 from frictionlab.scene.scene import Scene
 from frictionlab.study import registry
 from frictionlab.study.axes import SCENE

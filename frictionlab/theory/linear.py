@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.scene.free_body import held, springs_for, without_spring
 from frictionlab.scene.receptance import LinearBody, linear_body
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.signals import Segments, Signal, Wave, edges_of, highest
+from frictionlab.scene.units import measured
 from frictionlab.theory.periodic_response import PeriodicResponse, periodic_response
 from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
 from frictionlab.values.quantities import EPSILON, Floats
@@ -126,6 +130,8 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
     ----------
     Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """
+    if scene.is_free:
+        return _without_spring(friction_free_velocity, scene, law)
     if scene.bends:
         return math.nan
     if scene.remembers or not scene.is_harmonic:
@@ -138,12 +144,23 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
     return force / abs(stiffness) if stiffness else math.inf
 
 
+def _without_spring(velocity: Callable[..., float], scene: Scene, *law: FrictionLaw | None) -> float:
+    """Return a velocity of a body that no spring holds, as the limit on soft ones."""
+    scenes, found = Scenes.of([scene]), []
+    for units in springs_for(scene, remembers=False):
+        given = (one and measured(one, units) for one in law)
+        found.append(velocity(held(scenes, units)[0], *given) * units.velocity)
+    return float(without_spring(np.array(found)).value)
+
+
 def velocity_scale(scene: Scene) -> float:
     """Return V_lin for a constant normal load, a scale of velocities that needs no law [omega_1 L].
 
     For a body that is not linear it is that of one harmonic or, where loads are no sine, that of its linear
     springs and dashpots.
     """
+    if scene.is_free:
+        return _without_spring(velocity_scale, scene)
     if not scene.is_harmonic:
         return _largest_slip(scene, 0.0)
     if scene.bends:

@@ -99,6 +99,10 @@ COLUMNS: tuple[Column, ...] = (
            "ratios", "inputs", "relative belt speed", r"v_b/V_\mathrm{lin}"),
     Column("friction_to_drive", "friction coefficient * normal_load / force amplitude", "ratios", "inputs"),
     Column("presliding_ratio", "presliding length * frequency / V_lin", "ratios", "inputs"),
+    Column("drift_speed", "speed of a free body over a plate that only vibrates, positive along x1", "drift",
+           scale="velocity", in_si="speed of a free body over a plate that only vibrates, positive along x1"),
+    Column("drift_speed_error", "bound on the absolute error of drift_speed, estimated", "drift", scale="velocity",
+           in_si="bound on the absolute error of drift_speed_m_per_s, estimated"),
     Column("model", "what computed the number, in the words listed below, and for auto why it was chosen", "answer",
            is_text=True),
     Column("seconds", "kernel time", "answer"),
@@ -191,9 +195,10 @@ GROUPS: dict[str, str] = {
     "energies": "work of loads, dashpots and friction, per period, with errors",
     "multipliers": "Floquet multipliers of the orbit",
     "ratios": "mean friction, belt speed, friction and presliding length in natural scales",
+    "drift": "speed at which a body that no spring holds travels over a plate that vibrates",
     SHAPE: "curves.csv: where curves end and how they bend",
     ONSETS_GROUP: "onsets.csv: belt speeds at which the motion changes its kind",
-    ALL: "every column, and every table",
+    ALL: "every column but those of drift, and every table",
 }
 """Names that ``columns`` takes for several columns each."""
 _OF_TABLES = {
@@ -206,7 +211,7 @@ _OF_TABLES = {
 def columns_of(group: str) -> tuple[str, ...]:
     """The result columns of a group."""
     if group == ALL:
-        return tuple(RESULTS)
+        return tuple(each.name for each in COLUMNS if each.group != "drift")
     return _OF_TABLES.get(group) or tuple(each.name for each in COLUMNS if each.group == group)
 
 
@@ -412,6 +417,7 @@ _NAMES = {  # words, symbol, unit
     "scene.drive.amplitude": ("load amplitude", "P"),
     "scene.drive.phase": ("load phase", r"\varphi_1", "deg"),
     "scene.drive.waveform": ("drive waveform", ""),
+    "scene.drive.offset": ("constant force", "P_0"),
     "scene.drive.direction": ("drive direction", r"\chi", "deg"),
     "scene.transverse.natural_frequency": ("transverse natural frequency", r"\omega_r"),
     "scene.transverse.damping_ratio": ("transverse damping ratio", r"\beta_2"),
@@ -419,6 +425,7 @@ _NAMES = {  # words, symbol, unit
     "scene.transverse.load.amplitude": ("transverse load amplitude", "P_2"),
     "scene.transverse.load.phase": ("transverse load phase", r"\varphi_2", "deg"),
     "scene.transverse.load.waveform": ("transverse load waveform", ""),
+    "scene.transverse.load.offset": ("constant transverse force", "P_{20}"),
     "scene.transverse.load.frequency_ratio": ("transverse load frequency ratio", "r_2"),
     "scene.body.cubic_stiffness": ("cubic stiffness", "k_3"),
     "scene.body.amplitude_damping": ("amplitude damping", "c_3"),
@@ -480,12 +487,14 @@ _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." befor
     "drive.frequency_rad_per_s": ("drive frequency", r"\omega", "rad/s"),
     "drive.unbalance_kg_m": ("unbalance", "m r", "kg m"),
     "drive.amplitude_N": ("load amplitude", "F_1", "N"),
+    "drive.offset_N": ("constant force", "F_0", "N"),
     "drive.phase": ("load phase", r"\varphi_1", "deg"),
     "transverse.stiffness_N_per_m": ("transverse stiffness", "K_2", "N/m"),
     "transverse.damping_N_s_per_m": ("transverse damping", "C_2", "N s/m"),
     "transverse.natural_frequency_rad_per_s": ("transverse natural frequency", r"\omega_2", "rad/s"),
     "transverse.load.unbalance_kg_m": ("transverse unbalance", "m_2 r_2", "kg m"),
     "transverse.load.amplitude_N": ("transverse load amplitude", "F_2", "N"),
+    "transverse.load.offset_N": ("constant transverse force", "F_{20}", "N"),
     "transverse.load.phase": ("transverse load phase", r"\varphi_2", "deg"),
     "body.cubic_stiffness_N_per_m3": ("cubic stiffness", "K_3", "N/m$^3$"),
     "body.amplitude_damping_N_s_per_m3": ("amplitude damping", "C_3", "N s/m$^3$"),

@@ -113,38 +113,6 @@ def test_what_slow_data_cannot_see_is_flat() -> None:
     assert "the profile of damping is flat" in found.sentences
 
 
-def test_of_a_product_that_alone_is_seen_the_product_is_told() -> None:
-    """Below its limit Jenkins friction is a spring; per load the stiffness of a contact is stiffness*normal_load."""
-    times = np.linspace(0.0, 20.0, 400)
-    small = {"time": times, "slip": 0.01 * np.sin(times)}
-    noise = 1e-4 * np.random.default_rng(3).normal(size=400)
-    law = Product(one=2.0, other=3.0)
-    found = fl.fit(
-        small | {"friction": 6.0 * small["slip"] + noise}, law, free={"one": (0.5, 8.0), "other": (0.5, 8.0)}
-    )
-    (told,) = [line for line in found.sentences if line.startswith("only one*other is seen: ")]
-    assert float(re.findall(r"[\d.]+", told)[0]) == pytest.approx(6.0, abs=0.05)
-
-
-class Product(fl.BristleLaw):
-    """A spring whose stiffness is a product."""
-
-    one: fl.Positive
-    other: fl.Positive
-
-    def sliding_friction(self, speed: float) -> float:
-        return 1.0
-
-    def rate(self, v: Any, z: Any) -> Any:
-        return v
-
-    def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        return self.one * self.other * z
-
-    def presliding(self) -> float:
-        return 1.0
-
-
 def test_a_number_on_an_end_of_its_range_is_named() -> None:
     found = fl.fit(curve_of(fl.Coulomb(mu=0.4)), fl.Coulomb(mu=0.5), SCENE, {"mu": (0.45, 1.0)}, starts=2)
     assert found.table["at_bound"].tolist() == [True]

@@ -19,10 +19,10 @@ from profiles import deep
 from frictionlab import bench, cli
 from frictionlab.bench import account as pictures
 from frictionlab.bench.curve import CurveResult
+from frictionlab.bench.listed import PEERS
 from frictionlab.bench.measure import chosen, solve_points, time_task
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.equations import ScipySteps
-from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import Row, Times
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb

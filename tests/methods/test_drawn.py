@@ -98,7 +98,18 @@ def covered_at_two_tolerances(drawn: tuple[Keys, Keys], rough: float, fine: floa
     assert abs(one.mean_friction - other.mean_friction) <= one.error + other.error
 
 
+BENT = {
+    "damping_ratio": 0.1,
+    "normal_load": 2.0,
+    "belt_speed": 0.7,
+    "drive": {"amplitude": 3.0, "frequency": 1.3, "offset": 2.5},
+    "body": {"cubic_stiffness": 0.3},
+}
+"""A constant force hardens the spring."""
+
+
 @settings(max_examples=FEW)
+@example(drawn=(BENT, {"kind": "coulomb", "mu": 0.3}))
 @given(drawn=driven("line"))
 def test_means_on_the_line_are_those_of_an_unrelated_integration(drawn: Any) -> None:
     covered(drawn)

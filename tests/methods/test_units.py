@@ -23,7 +23,7 @@ KINDS = {
 }
 PARTS = "drive", "slip", "belt_vibration", "normal_load_variation"
 POWERS = {
-    **dict.fromkeys(("belt_speed", "normal_load", "velocity_amplitude", "x", "velocity"), 1),
+    **dict.fromkeys(("belt_speed", "normal_load", "velocity_amplitude", "x", "velocity", "offset"), 1),
     **dict.fromkeys(("presliding_length", "stribeck_speed"), 1),
     **dict.fromkeys(("viscosity", "damping"), -1),
 }
@@ -73,7 +73,10 @@ def turned_round(scene: Keys) -> Keys | None:
             return None
         if "direction" in part:
             part["direction"] += 180.0
-        elif isinstance(wave, dict) and not kept:
+            continue
+        if "offset" in part:
+            part["offset"] *= -1.0
+        if isinstance(wave, dict) and not kept:
             for each in wave["harmonics"]:
                 each["phase"] += 180.0
         elif not kept:

@@ -32,7 +32,7 @@ from frictionlab.runner.summary import summary
 from frictionlab.runner.table import inputs, records
 from frictionlab.study import registry
 from frictionlab.study.load import load_study, parse_study
-from frictionlab.values.columns import ALWAYS, DEFAULT, RESULTS, TEXT
+from frictionlab.values.columns import ALWAYS, DEFAULT, RESULTS, TEXT, columns_of
 
 pytestmark = pytest.mark.usefixtures("fakes")
 
@@ -59,7 +59,7 @@ def test_the_table_has_the_inputs_first_and_every_result_column_in_the_order_of_
     assert list(table.columns) == [*given, *usual]
     assert {*ALWAYS} < {*usual} < {*DEFAULT}
     assert all(table[name].notna().any() for name in usual if name != "reason")
-    assert list(fl.run(study(), columns="all").table) == [*given, *RESULTS]
+    assert list(fl.run(study(), columns="all").table) == [*given, *columns_of("all")]
 
 
 def test_rows_are_in_the_order_of_the_cases() -> None:
@@ -461,7 +461,7 @@ def test_a_steady_state_is_the_row_of_the_same_scene() -> None:
     state = fl.steady_state(SCENE, LAW)
     (row,) = records(fl.curve(SCENE, LAW, belt_speed=[5.0], columns="all"))
 
-    for name in set(RESULTS) - {"seconds"}:
+    for name in {*columns_of("all")} - {"seconds"}:
         value = getattr(state, name)
         assert row[name] == (None if value == "" or value != value else value), name
     assert state.normalized_friction == state.mean_friction / 0.4

@@ -38,9 +38,9 @@ SAID = {
     "stribeck_speed, stribeck_exponent, viscosity, curve\n    did you mean 'mu_kinetic'?",
     "fl.Coulomb(mu='0.4')": "Coulomb: mu: must be a number, got the text '0.4' (remove the quotes)",
     "SCENE.with_(normal_load=-3)": "Scene: normal_load: must be > 0, got -3",
-    "fl.Scene(**GIVEN, initail={'x': 1})": "Scene: initail: unknown key; allowed: damping_ratio, normal_load, "
-    "belt_speed, drive, transverse, body, slip, transverse_slip, belt_vibration, normal_load_variation, initial, "
-    "dimensional\n    did you mean 'initial'?",
+    "fl.Scene(**GIVEN, initail={'x': 1})": "Scene: initail: unknown key; allowed: damping_ratio, spring, "
+    "normal_load, belt_speed, drive, transverse, body, slip, transverse_slip, belt_vibration, "
+    "normal_load_variation, initial, dimensional\n    did you mean 'initial'?",
     "fl.steady_state(SCENE, LAW, method='shoting')": f"unknown method 'shoting'; installed: "
     f"{', '.join(method_names())}; did you mean 'shooting'?",
     "fl.steady_state(SCENE, 'coulomb')": "law must be a friction law such as fl.Coulomb(mu=0.4), "

@@ -11,7 +11,7 @@ import pytest
 from profiles import some
 from study_mistakes import EDITS, GOOD, HINTS
 
-from frictionlab.scene.as_written import without_unit
+from frictionlab.scene.dimensional import without_unit
 from frictionlab.study import registry
 from frictionlab.study.load import load_study, parse_study
 from frictionlab.study.parts import Expectation
@@ -339,7 +339,7 @@ def test_a_mistake_shows_its_place_its_line_a_caret_and_a_likely_meaning(written
         load_study(written(GOOD.replace("  belt_speed", "  belt_sped")))
 
     assert str(caught.value).splitlines() == [
-        "study.yaml:7:3: scene.belt_sped: unknown key; allowed: damping_ratio, normal_load, belt_speed, "
+        "study.yaml:7:3: scene.belt_sped: unknown key; allowed: damping_ratio, spring, normal_load, belt_speed, "
         "drive, transverse, body, slip, transverse_slip, belt_vibration, normal_load_variation, initial, dimensional",
         "      belt_sped: 5",
         "      ^",
@@ -400,7 +400,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         "study.yaml:5:18: scene.damping_ratio: must be >= 0, got -0.1",
         "study.yaml:8:3: scene.drive.frequency: required key is missing",
         "study.yaml:8:25: scene.drive.unbalanse: unknown key; allowed: unbalance, amplitude, phase, "
-        "waveform, frequency, direction",
+        "waveform, offset, frequency, direction",
         "study.yaml:14:25: laws[0].mu: must be a number, got true",
         "study.yaml:17:12: tolerance: must be a finite number, got .inf",
         "study.yaml:19:49: sweep.scene.belt_speed.num: must be >= 2, got 1",

@@ -1,31 +1,24 @@
-"""The nearest curve of another model: which numbers bring one curve of mean friction closest to another.
-
-The experiment that tells models apart best: where their mean frictions lie furthest apart.
-"""
+"""Nearest curve of another model: which numbers bring one curve of mean friction closest to another."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from frictionlab.analysis.fit.free import Model, free_numbers
 from frictionlab.analysis.fit.measured import Measurements, given_measurements
 from frictionlab.analysis.fit.residuals import FIT_TOLERANCE, STARTS, Residuals, search
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner.api import curve
-from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
-from frictionlab.runner.steady_state import steady_states
+from frictionlab.runner.arguments import given_law, given_scene, given_speeds
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.scenes import Scenes
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.values.quantities import Floats
 
@@ -250,161 +243,3 @@ def _least_largest(residuals: Residuals, start: Floats) -> Floats:
     )
     found = np.clip(done.x[:-1], 0.0, 1.0)
     return found if np.abs(residuals.raw(found)).max() <= scale else start
-
-
-DRAWN = 64
-"""Experiments drawn over the ranges (Sobol's sequence)."""
-REFINED = 3
-"""The best of them from which a better one is looked for."""
-BELT = "belt_speed"
-
-
-@dataclass(frozen=True, eq=False)
-class Experiments:
-    """Experiments ranked by how well they distinguish models, the best first.
-
-    ``fl.discriminate`` returns it.
-
-    Attributes
-    ----------
-    table : pandas.DataFrame
-        A row for each experiment: its inputs, the mean friction by each model (``mean_1``, ``mean_2``, ...),
-        ``apart``, the smallest distance between two models over sigma, and ``nearest``, these two models.
-    inputs : tuple of str
-        Names of the inputs.
-
-    Examples
-    --------
-    >>> import frictionlab as fl
-    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
-    >>> models = [(scene, fl.Coulomb(mu=0.4)), (scene, fl.Coulomb(mu=0.5))]
-    >>> found = fl.discriminate(models, {"belt_speed": (1, 60)}, sigma=0.01)
-    >>> list(found.best), found.table["nearest"].iloc[0]
-    (['belt_speed'], '1 and 2')
-    >>> found.plot().savefig("experiments.svg")
-    """
-
-    table: pd.DataFrame
-    inputs: tuple[str, ...]
-
-    @property
-    def best(self) -> dict[str, float]:
-        """Inputs of the experiment that distinguishes the models best."""
-        return {name: float(self.table[name].iloc[0]) for name in self.inputs}
-
-    def plot(self) -> Any:
-        """Draw the distance between the models over each input.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Figure.
-        """
-        from frictionlab.charts.fits import experiments_figure  # with matplotlib, which takes a second
-
-        return experiments_figure(self.table, self.inputs)
-
-
-def discriminate(
-    models: Sequence[tuple[Scene, FrictionLaw]], experiments: Mapping[str, tuple[float, float]], sigma: float
-) -> Experiments:
-    """Rank experiments by how well they distinguish models.
-
-    An experiment at which a model has no mean friction is left out.
-
-    Parameters
-    ----------
-    models : list of tuple of Scene and FrictionLaw
-        Two or more models.
-    experiments : dict of str to tuple of float
-        Range of each input of the scenes that can be set, by path, such as
-        ``{"belt_speed": (1, 60), "drive.frequency": (0.5, 2)}``.
-    sigma : float, > 0
-        Standard error of a measured mean friction coefficient [-].
-
-    Returns
-    -------
-    Experiments
-        Experiments, the best first.
-
-    Raises
-    ------
-    ValueError
-        If a value makes no sense.
-    TypeError
-        If a value is of another kind.
-
-    Examples
-    --------
-    >>> import frictionlab as fl
-    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
-    >>> models = [(scene, fl.Coulomb(mu=0.4)), (scene, fl.Coulomb(mu=0.5))]
-    >>> found = fl.discriminate(models, {"belt_speed": (1, 60)}, sigma=0.01)
-    >>> found.best["belt_speed"] > 45, bool(found.table["apart"].iloc[0] >= 10)
-    (True, True)
-    """
-    if len(models) < 2:
-        raise ValueError(f"models: two or more are needed to tell apart, got {len(models)}")
-    pairs = [(given_scene(scene), given_law(law)) for scene, law in models]
-    names, ranges = tuple(experiments), np.array([*experiments.values()], dtype=float)
-    if not names or ranges.shape != (len(names), 2) or not (ranges[:, 0] < ranges[:, 1]).all():
-        raise ValueError(
-            f"experiments must be ranges by input, such as {{'belt_speed': (1, 60)}}, got {experiments!r}"
-        )
-    error = given_tolerance(sigma, "sigma")
-    drawn = ranges[:, 0] + qmc.Sobol(len(names), seed=1).random(DRAWN) * np.ptp(ranges, axis=1)
-    tried = [*drawn, *(np.where(side, ranges[:, 1], ranges[:, 0]) for side in (False, True))]
-    rows = {tuple(point): _means(pairs, names, point) for point in tried}
-
-    def apart(point: Floats) -> float:
-        inside = tuple(np.clip(point, ranges[:, 0], ranges[:, 1]))
-        if inside not in rows:
-            rows[inside] = _means(pairs, names, np.array(inside))
-        return _smallest(rows[inside])[0]
-
-    best = sorted(rows, key=lambda point: -np.nan_to_num(_smallest(rows[point])[0], nan=-1.0))[:REFINED]
-    for start in best:
-        steps = 0.05 * np.ptp(ranges, axis=1)
-        corners = [np.array(start), *(np.array(start) + step for step in np.diag(steps))]
-        minimize(
-            lambda point: -np.nan_to_num(apart(point), nan=-1.0),
-            np.array(start),
-            method="Nelder-Mead",
-            options={"initial_simplex": np.array(corners), "maxfev": 40, "xatol": 1e-4, "fatol": 1e-6},
-        )
-    return Experiments(_table(names, rows, error), names)
-
-
-def _means(pairs: Sequence[tuple[Scene, FrictionLaw]], names: Sequence[str], point: Floats) -> Floats:
-    """The mean friction of each model at an experiment; NaN where it has none."""
-    given = dict(zip(names, point.tolist(), strict=True))
-    found = []
-    for scene, law in pairs:
-        there = scene.with_(**{name: value for name, value in given.items() if name != BELT})
-        speed = given.get(BELT, scene.belt_speed)
-        answered = steady_states(Scenes(there, np.array([speed])), law, FIT_TOLERANCE, ["mean_friction"])
-        found.append(float(answered.numbers["mean_friction"][0]))
-    return np.array(found)
-
-
-def _smallest(means: Floats) -> tuple[float, tuple[int, int]]:
-    """The smallest distance between two models, and which these are."""
-    return min(
-        (abs(float(means[one] - means[other])), (one, other))
-        for one, other in combinations(range(len(means)), 2)
-    )
-
-
-def _table(names: Sequence[str], rows: Mapping[tuple[float, ...], Floats], sigma: float) -> pd.DataFrame:
-    """The best first, those without a number left out."""
-    told = []
-    for point, means in rows.items():
-        if np.isnan(means).any():
-            continue
-        distance, (one, other) = _smallest(means)
-        row: dict[str, Any] = dict(zip(names, map(float, point), strict=True))
-        row |= {f"mean_{place}": float(mean) for place, mean in enumerate(means, 1)}
-        told.append(row | {"apart": distance / sigma, "nearest": f"{one + 1} and {other + 1}"})
-    if not told:
-        raise ValueError("no experiment in these ranges has a mean friction by every model")
-    return pd.DataFrame(told).sort_values("apart", ascending=False, kind="stable").reset_index(drop=True)

@@ -16,7 +16,6 @@ from frictionlab.analysis.fit.errors import (
     autocorrelation,
     correlation_length,
     covariances,
-    unseen_sentence,
 )
 from frictionlab.analysis.fit.free import Model
 from frictionlab.analysis.fit.measured import Measurements
@@ -422,13 +421,6 @@ def _what_to_know(fit: FittedLaws) -> list[str]:
         for name, form in each.shapes.items():
             if form != "bounded":
                 told.append(f"{several}the profile of {name} is {form}")
-        values = np.array([*each.values.values()])
-        slopes = np.array([one.slope(x) for one, x in zip(each.model.free, values, strict=True)])
-        spread = np.outer(slopes, slopes) * each.covariances.by_blocks
-        if values.all() and (
-            seen := unseen_sentence([*each.values], values, spread / np.outer(values, values))
-        ):
-            told.append(f"{several}{seen}")
         if each.found.others:
             other = each.found.others[0]
             at = ", ".join(f"{name} = {x:.4g}" for name, x in each.model.values(other.shares).items())

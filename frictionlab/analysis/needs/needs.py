@@ -21,7 +21,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
 from frictionlab.runner.progress import ProgressAsked, progress_told
 from frictionlab.runner.words import counted, in_words
-from frictionlab.scene.as_written import without_unit
+from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.units import Units

@@ -67,12 +67,6 @@ def memory_column(k: int, across: bool = False) -> str:
     return f"memory_{k}_transverse" if across else f"memory_{k}"
 
 
-def memory_columns(law: FrictionLaw) -> list[str]:
-    """Return the names of the columns of a law's memory."""
-    directions = (False,) if law.memory_kind == "scalars" else (False, True)
-    return [memory_column(k, across) for k in range(law.count()) for across in directions]
-
-
 def sample(orbit: Orbit, scene: Scene, law: FrictionLaw, n: int) -> Samples:
     """Sample the orbit at n equally spaced times tau = 0 ... its period (end not included)."""
     step = np.ptp(orbit.tau) / orbit.periods / n

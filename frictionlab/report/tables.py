@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 from markupsafe import Markup, escape
 
+from frictionlab.scene.waveforms import told
 from frictionlab.values.columns import symbol, unit_shown, word
 
 _RENAMED = {"varphi": "phi", "varepsilon": "epsilon"}  # what TeX calls so
@@ -133,9 +134,9 @@ def setting(name: str, value: Any, digits: int = 6) -> Markup:
 
 
 def number(value: Any, digits: int = 6) -> Cell:
-    """A number to so many digits; nothing for one that does not apply."""
+    """A number to so many digits, words for a waveform of points; nothing for one that does not apply."""
     if isinstance(value, str):
-        return value
+        return told(value).words if value.startswith("points ") else value
     if value is None or pd.isna(value):
         return ""
     return minus(f"{value:.{digits}g}")

@@ -87,7 +87,6 @@ OUTSIDE = {
         "distributed": "runner",
         "scipy": "theory motion methods.reduced curves runner analysis bench.peers",
         "heyoka": "bench.peers",
-        "numbalsoda": "bench.peers",
         "jinja2": "report",
         "markupsafe": "report",
         "click": "cli",

@@ -7,24 +7,24 @@ from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
     "analysis": 2217,
-    "bench": 2979,
+    "bench": 2908,
     "beside the rooms": 87,
     "charts": 1775,
     "cli": 972,
     "compile": 1409,
     "curves": 842,
     "laws": 686,
-    "methods": 8018,
+    "methods": 8032,
     "motion": 4596,
     "report": 1816,
-    "runner": 4007,
+    "runner": 4043,
     "scene": 1861,
     "study": 2809,
     "testing": 1491,
     "theory": 841,
     "tools": 19,
     "values": 1406,
-    "tests": 26400,
+    "tests": 26147,
     "plugins": 3228,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

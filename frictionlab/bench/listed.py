@@ -9,7 +9,6 @@ from frictionlab.bench.curve import BenchCurve
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.peers.equations import ScipyBristle, ScipySteps
 from frictionlab.bench.peers.heyoka_taylor import Heyoka
-from frictionlab.bench.peers.numbalsoda_bristle import Numbalsoda
 from frictionlab.bench.peers.scipy_events import ScipyEvents
 from frictionlab.bench.record import Section, SectionResult
 from frictionlab.bench.report import left_out
@@ -77,7 +76,5 @@ def bench_summary(done: Sequence[SectionResult]) -> str:
     return "\n\n".join([*told, left_out(missing)] if missing else told)
 
 
-PEERS: dict[str, type[Peer]] = {
-    peer.name: peer for peer in (ScipySteps, ScipyEvents, ScipyBristle, Heyoka, Numbalsoda)
-}
+PEERS: dict[str, type[Peer]] = {peer.name: peer for peer in (ScipySteps, ScipyEvents, ScipyBristle, Heyoka)}
 """Other libraries by the names that a list gives them."""

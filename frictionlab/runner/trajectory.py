@@ -1,4 +1,4 @@
-"""Motions in time from Python: transients, several periods, and what never repeats."""
+"""Motions in time from Python: transients, several periods, what never repeats, and the events on the way."""
 
 from __future__ import annotations
 
@@ -15,10 +15,31 @@ from frictionlab.runner.engine import within
 from frictionlab.runner.part import beside_in_si, si_scales
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.study.grid import law_in_scene
-from frictionlab.values.quantities import at_least_one
+from frictionlab.values.quantities import Floats, at_least_one
 
+_STILL, _LOOKS = 1e-12, np.linspace(-1.0, 1.0, 65)
+"""Slip over the largest velocity that is rounding; places in a panel between which slip is taken to turn once."""
 NO_MOTION = "no motion in time is known of this scene and law by {name}: {why}"
-NOT_DRIVEN = "it needs a driven mass, and a law that is not solved axis by axis"
+NOT_DRIVEN = "it needs a mass, and a law that is not solved axis by axis"
+
+
+class Trajectory(pd.DataFrame):  # type: ignore[misc]
+    """Motion in time, a row for each instant.
+
+    Attributes
+    ----------
+    events : pandas.DataFrame
+        A row for each event along the belt, in the order of time: ``tau``, ``event`` ("stick begins", "stick
+        ends" or "reversal" of the slip), ``x1``, ``v1``; in SI units, too, if the scene is.
+    """
+
+    _metadata = ["events"]  # noqa: RUF012 - pandas asks for a list
+    events: pd.DataFrame
+
+    @property
+    def _constructor(self) -> type[pd.DataFrame]:
+        """Make a plain table of a part of the rows, of which these are no longer the events."""
+        return pd.DataFrame
 
 
 def trajectory(
@@ -29,10 +50,11 @@ def trajectory(
     initial: Initial | None = None,
     method: str | Method = "auto",
     tolerance: float = 1e-8,
-) -> pd.DataFrame:
-    """Compute the motion of a driven mass from an initial state.
+) -> Trajectory:
+    """Compute the motion of a mass from an initial state.
 
-    A period is the common period of all that changes in time. Instants of stick and reversal are located.
+    A period is the common period of all that changes in time; if nothing drives the mass it is that of the free
+    mass without damping, 2 pi. Instants of stick and reversal are located.
 
     Parameters
     ----------
@@ -45,8 +67,8 @@ def trajectory(
     samples : int, >= 1, default 200
         Rows per period, evenly spaced; one more row is the end.
     initial : Initial, optional
-        Position and velocity at tau = 0. ``scene.initial`` if left out; the friction-free motion if the scene
-        has none either.
+        Position and velocity at tau = 0. ``scene.initial`` if left out; if the scene has none either the
+        friction-free motion, or rest on the belt if nothing drives the mass.
     method : str or Method, default "auto"
         Name of a method, or a method such as ``fl.March(steps=1000)``.
     tolerance : float, > 0, default 1e-8
@@ -54,10 +76,11 @@ def trajectory(
 
     Returns
     -------
-    pandas.DataFrame
-        A row for each instant, with the columns of ``state.orbit(n)``: ``tau``, ``x1``, ``v1``, ``x2``,
-        ``v2``, ``friction``, ``load``, ``slip``, ...; for a scene in SI units ``tau_s``, ``x1_m``,
-        ``v1_m_per_s``, ..., too.
+    Trajectory
+        Table of pandas with a row for each instant. The columns are those of ``state.orbit(n)``: ``tau``, ``x1``,
+        ``v1``, ``x2``, ``v2``, ``friction``, ``load``, ``slip``, ...; for a scene in SI units ``tau_s``,
+        ``x1_m``, ``v1_m_per_s``, ..., too. Its ``.events`` has a row for each begin and end of stick, and each
+        reversal of slip.
 
     Raises
     ------
@@ -74,6 +97,9 @@ def trajectory(
     >>> motion = fl.trajectory(scene, fl.Coulomb(mu=0.4), periods=3, samples=50, initial=fl.Initial(x=3))
     >>> len(motion), float(motion.x1[0])
     (151, 3.0)
+    >>> block = fl.Scene(damping_ratio=0, normal_load=1, belt_speed=0, initial=fl.Initial(x=4.5, velocity=0))
+    >>> fl.trajectory(block, fl.Coulomb(mu=1), periods=2).events["event"].tolist()
+    ['reversal', 'stick begins']
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     periods, samples = at_least_one("periods", periods), at_least_one("samples", samples)
@@ -93,7 +119,7 @@ def trajectory(
     return _sampled(scene, law, found, samples)
 
 
-def _sampled(scene: Scene, law: FrictionLaw, found: list[Orbit], samples: int) -> pd.DataFrame:
+def _sampled(scene: Scene, law: FrictionLaw, found: list[Orbit], samples: int) -> Trajectory:
     from frictionlab.motion.orbit.sample import sample_at, work_of  # imports numba: only where it is needed
 
     rows, done = [], 0.0
@@ -103,5 +129,46 @@ def _sampled(scene: Scene, law: FrictionLaw, found: list[Orbit], samples: int) -
         part = pd.DataFrame(sample_at(orbit, scene, law, times if last else times[:-1]).columns())
         rows.append(part.assign(work=part.work + done))
         done += work_of(orbit, scene)
-    motion = pd.concat(rows, ignore_index=True)
-    return motion.assign(**beside_in_si(motion, {} if scene.dimensional is None else si_scales(scene)))
+    motion, events = pd.concat(rows, ignore_index=True), _events(scene, found)
+    scales = {} if scene.dimensional is None else si_scales(scene)
+    told = Trajectory(motion.assign(**beside_in_si(motion, scales)))
+    told.events = events.assign(**beside_in_si(events, scales))
+    return told
+
+
+def _events(scene: Scene, found: list[Orbit]) -> pd.DataFrame:
+    """Return where stick along the belt begins and ends, and where slip turns round, in the order of time."""
+    from scipy.optimize import brentq
+
+    from frictionlab.motion.orbit.recorder import interpolation_weights
+
+    belt, rows, side, sticking = scene.signals().belt[0], [], 0.0, False
+    for orbit in found:
+        assert orbit.stick is not None
+        for tau, x, v, sticks in zip(orbit.tau, orbit.x.real, orbit.v.real, orbit.stick, strict=True):
+            slip = v - scene.belt_speed - belt(tau)
+            if sticks != sticking:
+                rows.append((tau[0], "stick begins" if sticks else "stick ends", x[0], v[0]))
+            sticking = bool(sticks)
+            if sticks:
+                continue
+            fine = interpolation_weights(_LOOKS) @ slip
+            signs = np.where(np.abs(fine) > _STILL * np.abs(v).max(), np.sign(fine), 0.0)
+            for k in np.flatnonzero(signs).tolist():
+                if side * signs[k] < 0.0:
+                    place = _LOOKS[max(k - 1, 0)]
+                    if k > 0 and fine[k - 1] * fine[k] < 0.0:
+                        place = brentq(
+                            lambda p, w=slip: interpolation_weights(np.array([p]))[0] @ w, place, _LOOKS[k]
+                        )
+                    then = interpolation_weights(np.array([place]))[0] @ np.column_stack([tau, x, v])
+                    rows.append((then[0], "reversal", *then[1:]))
+                side = signs[k]
+    return pd.DataFrame(rows, columns=["tau", "event", "x1", "v1"])
+
+
+def _at(place: float, values: Floats) -> float:
+    """Compute the polynomial through the values at the nodes of a panel."""
+    from frictionlab.motion.orbit.recorder import interpolation_weights
+
+    return float(interpolation_weights(np.array([place]))[0] @ values)

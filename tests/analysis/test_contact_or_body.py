@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from equivalence import (
+from equivalence_figures import (
     COULOMB,
     LOAD,
     MU,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from profiles import deep
-from rivals import (
+from rivals_figures import (
     COULOMB,
     MU,
     REFERENCES,

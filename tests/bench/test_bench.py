@@ -371,7 +371,7 @@ MISTAKES = [
         "methods:",
         "peers:",
         "list.yaml:11:",
-        "must be one of scipy, scipy_events, scipy_bristle, heyoka, numbalsoda",
+        "must be one of scipy, scipy_events, scipy_bristle, heyoka",
     ),
 ]
 
@@ -527,10 +527,8 @@ IN_THE_PLANE = ElastoPlastic(mu_kinetic=0.4, presliding_length=1.0)
 MEAN_IN_THE_PLANE = 0.012659382313928562  # bristles plane of truth.csv
 
 
-@pytest.mark.parametrize("name", ["scipy_bristle", "numbalsoda"])
-def test_a_peer_of_bristle_laws_finds_the_mean_friction(name: str) -> None:
-    peer = PEERS[name]()
-    pytest.importorskip(peer.package)
+def test_a_peer_of_bristle_laws_finds_the_mean_friction() -> None:
+    peer = PEERS["scipy_bristle"]()
     planar = PLANAR.model_copy(update={"belt_speed": 5.0})
 
     assert peer.solve([SLIDING.at(27.0)], BRISTLES, 1e-6) == pytest.approx([BRISTLES_MEAN], abs=1e-5)

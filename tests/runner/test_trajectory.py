@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from fig_4b import LAW, SCENE
+from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
@@ -54,7 +55,10 @@ def test_a_motion_that_never_settles_is_followed_all_the_same() -> None:
     ("given", "told"),
     [
         ({"method": "exact"}, "no motion in time is known of this scene and law by exact"),
-        ({"scene": fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5)}, "it needs a driven mass"),
+        (
+            {"law": fl.Dahl(mu=0.4, stiffness=4, planar="per-axis"), "scene": PLANAR},
+            "it needs a mass, and a law",
+        ),
         ({"periods": 0}, "periods must be a whole number of at least 1, got 0"),
         ({"samples": 2.5}, "samples must be a whole number of at least 1, got 2.5"),
     ],
@@ -62,3 +66,70 @@ def test_a_motion_that_never_settles_is_followed_all_the_same() -> None:
 def test_what_cannot_be_followed_is_told(given: dict[str, object], told: str) -> None:
     with pytest.raises(ValueError, match=told):
         fl.trajectory(**{"scene": SCENE, "law": LAW} | given)  # type: ignore[arg-type]
+
+
+def let_go(x: float, damping_ratio: float = 0.0, normal_load: float = 1.0) -> fl.Scene:
+    return fl.Scene(damping_ratio=damping_ratio, normal_load=normal_load, belt_speed=0, initial={"x": x})
+
+
+@pytest.mark.parametrize("x", [10.5, -7.3, 0.9])
+def test_a_block_let_go_swings_by_half_cycles_until_friction_holds_it(x: float) -> None:
+    """Each half cycle takes pi and ends nearer to rest by twice the friction force over the stiffness."""
+    motion = fl.trajectory(let_go(x), fl.Coulomb(mu=1), periods=8)
+    ends = [x]
+    while abs(ends[-1]) > 1.0:
+        ends.append(-(ends[-1] - math.copysign(2.0, ends[-1])))
+    half_cycles = len(ends) - 1
+
+    events = ["reversal"] * (half_cycles - 1) + ["stick begins"]
+    assert motion.events["event"].tolist() == events
+    assert motion.events["tau"].to_numpy() == pytest.approx(
+        math.pi * np.arange(1, half_cycles + 1) if half_cycles else [0]
+    )
+    assert motion.events["x1"].to_numpy() == pytest.approx(ends[1:] or [x], abs=1e-9)
+    assert motion.x1.iloc[-1] == pytest.approx(ends[-1], abs=1e-9)
+
+
+def test_a_damped_block_turns_round_where_its_closed_form_does() -> None:
+    """In slip x is a damped swing about -+ the friction force; half a turn takes pi/omega_d."""
+    ratio, start = 0.1, 8.0
+    events = fl.trajectory(let_go(start, ratio, 0.5), fl.Coulomb(mu=1), periods=2).events
+    left, end = math.exp(-ratio * math.pi / math.sqrt(1 - ratio**2)), start
+    for _, event in events.iterrows():
+        centre = math.copysign(0.5, end)
+        end = centre - (end - centre) * left
+        assert event["x1"] == pytest.approx(end, abs=1e-8)
+    turns = math.pi / math.sqrt(1 - ratio**2)
+    assert events["tau"].to_numpy() == pytest.approx(turns * np.arange(1, len(events) + 1), rel=1e-8)
+
+
+def test_a_belt_carries_its_mass_until_the_spring_overcomes_static_friction() -> None:
+    scene = fl.Scene(damping_ratio=0.05, normal_load=2, belt_speed=0.5)
+    events = fl.trajectory(scene, fl.Coulomb(mu=0.3, mu_static=0.5), periods=4).events
+    force = 2 * 0.5 - 0.1 * 0.5  # of the spring: the dashpot helps
+
+    assert events["event"].tolist()[:2] == ["stick begins", "stick ends"]
+    assert events["tau"].to_numpy()[:2] == pytest.approx([0.0, force / 0.5])
+    assert set(events["event"]) == {"stick begins", "stick ends"}
+
+
+def test_events_of_a_driven_motion_are_where_its_slip_is_zero() -> None:
+    for law in (LAW, fl.Dahl(mu=0.4, stiffness=4)):
+        events = fl.trajectory(SCENE, law, periods=3, initial=START).events
+        assert len(events) >= 5
+        assert events["v1"].to_numpy() == pytest.approx(SCENE.belt_speed, abs=1e-8)
+        assert events["tau"].is_monotonic_increasing
+
+
+def test_an_undriven_motion_on_bristles_is_that_of_an_unrelated_integration() -> None:
+    scene, law = let_go(6.0, 0.02), fl.Dahl(mu=1, stiffness=5)
+    motion = fl.trajectory(scene, law, periods=2, samples=20)
+    times = motion.tau.to_numpy()
+
+    def rates(_tau: float, y: list[float]) -> tuple[float, float, float]:
+        rate = law.rate(y[1], y[2])
+        return y[1], -0.04 * y[1] - y[0] - law.friction(y[1], y[2], rate), rate
+
+    known = solve_ivp(rates, (0.0, times[-1]), [6.0, 0.0, 0.0], "DOP853", times, rtol=1e-11, atol=1e-12)
+    assert motion.x1.to_numpy() == pytest.approx(known.y[0], abs=1e-6)
+    assert set(motion.events["event"]) == {"reversal"}

@@ -23,7 +23,7 @@ from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
-from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
+from frictionlab.methods.shooting.undriven import ACROSS, Undriven, solve_undriven
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.parts import BENDING
 from frictionlab.scene.scene import Scene
@@ -110,8 +110,10 @@ class Shooting(Method):
         return solve(scenes, law, tolerance)
 
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
-        """Of a driven mass, by the period map that closes its orbits."""
+        """Of a driven mass, by the period map that closes its orbits; of an undriven one, in turns of it."""
         solve = next(solve for applies, solve in CASES if applies(scene, law))
+        if solve is solve_undriven:
+            return Undriven(scene, law, tolerance).from_the_start(periods)
         return follow_motion(scene, law, periods, tolerance) if solve is solve_driven else []
 
     def states(

@@ -348,16 +348,32 @@ class Undriven:
             x = motion.state[0] / math.sqrt(self._path.mass.stiffness)
             return orbit_at_one_place(x, motion.mean, motion.kind == ModelWord.AT_REST)
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
+        try:
+            found, _ = self.recorded(motion.state, turns)
+        except NotFound:
+            return None
+        return found if motion.long is None else replace(found, periods=round(turns))
+
+    def recorded(self, state: Floats, turns: float) -> tuple[Orbit, Floats]:
+        """Record so many turns from a state, and the state after them. Raises NotFound."""
         accuracy = min(max(0.1 * self.tolerance, LEAST), self._accuracy)
         # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
         accuracy = max(accuracy / FINER, LEAST) if self.law.count() == 0 else accuracy
-        try:
-            track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
-        except NotFound:
-            return None
+        span = self._path.follow(state, turns, accuracy, PANELS_AT_FIRST)
+        track = span.track
         parts = track.tau, track.x, track.v, track.friction, track.stick
-        found = Orbit(*(part[: track.filled[0]] for part in parts))
-        return found if motion.long is None else replace(found, periods=round(turns))
+        return Orbit(*(part[: track.filled[0]] for part in parts)), np.asarray(span.end)
+
+    def from_the_start(self, turns: int) -> list[Orbit]:
+        """Record the motion from the start, turn by turn. Raises ValueError for one that cannot be followed."""
+        state, found = self._path.start, list[Orbit]()
+        try:
+            for turn in range(turns):
+                orbit, state = self.recorded(state, 1.0)
+                found.append(replace(orbit, tau=orbit.tau + turn * TURN))
+        except NotFound as problem:
+            raise ValueError(str(problem)) from None
+        return found
 
 
 def means_of(passages: Sequence[Passage]) -> Floats:

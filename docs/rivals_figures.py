@@ -1,4 +1,4 @@
-"""Which other models make a concave curve of mean friction: python tests/rivals.py.
+"""Which other models make a concave curve of mean friction: python docs/rivals_figures.py.
 
 Writes the figure of docs/rivals.md, in several minutes. Two curves are to be come near: of Coulomb friction on the
 linear body at resonance, and of a soft Dahl contact under a prescribed slip; both end at belt speed 50. Distances are
@@ -24,7 +24,7 @@ import frictionlab as fl
 from frictionlab.charts.sheet import CYCLE, NO_HEADING, STYLE, Sheet, write_figure
 from frictionlab.theory import mean_prescribed_longitudinal, mean_soft_dahl
 
-FIGURES = Path(__file__).parents[1] / "docs" / "figures"
+FIGURES = Path(__file__).parent / "figures"
 MU, END = 0.4, 50.0
 SPEEDS = np.array([*range(4, 48, 4), 47, 49, 50, 51, 52, 54, 56], float)
 """Of all curves: more of them where reversal ends, in a corner."""

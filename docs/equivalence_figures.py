@@ -1,6 +1,7 @@
-"""How near elastic friction under a prescribed slip comes to Coulomb friction of a body: python tests/equivalence.py.
+"""How near elastic friction under a prescribed slip comes to Coulomb friction of a body.
 
-Writes the two figures of docs/equivalence.md, in a minute or two. Distances are in shares of mu, at fifty belt speeds
+Writes the two figures of docs/equivalence.md (python docs/equivalence_figures.py), in a minute or two.
+Distances are in shares of mu, at fifty belt speeds
 up to V_lin (the reverse at ten), from which on all curves are mu. The slip has the velocity amplitude V_lin and the
 displacement amplitude X; its curve depends on presliding length over X alone, and rises with it everywhere: what lies
 above the curve of one and below that of the next bounds what any between them can reach.
@@ -27,7 +28,7 @@ from frictionlab.charts.maps import cell_edges
 from frictionlab.charts.sheet import CYCLE, NO_HEADING, STYLE, Sheet, write_figure
 from frictionlab.theory import friction_free_velocity, mean_prescribed_longitudinal, mean_soft_dahl
 
-FIGURES = Path(__file__).parents[1] / "docs" / "figures"
+FIGURES = Path(__file__).parent / "figures"
 MU, LOAD = 0.4, 10.0
 COULOMB = fl.Coulomb(mu=MU)
 SHARES = np.arange(1, 51) / 50

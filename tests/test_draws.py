@@ -26,13 +26,8 @@ def drawn() -> list[Any]:
 
 
 @deep("hundreds of draws")
-def test_two_runs_draw_the_same():
-    assert DEFAULT.derandomize
-    assert drawn() == drawn()
-
-
-@deep("hundreds of draws")
 def test_a_module_loaded_in_between_changes_no_draw(tmp_path, monkeypatch: pytest.MonkeyPatch):
+    assert DEFAULT.derandomize
     before = drawn()
     (tmp_path / "odd_numbers.py").write_text("SPEED = 1234.56789\nCOUNT = 987654\nNAME = 'unheard of'\n")
     monkeypatch.syspath_prepend(tmp_path)

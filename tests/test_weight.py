@@ -6,7 +6,7 @@ from profiles import deep
 from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
-    "analysis": 2217,
+    "analysis": 2245,
     "bench": 2908,
     "beside the rooms": 87,
     "charts": 1775,
@@ -18,17 +18,17 @@ LIMITS = {
     "motion": 4596,
     "report": 1816,
     "runner": 4043,
-    "scene": 1861,
+    "scene": 1833,
     "study": 2809,
     "testing": 1491,
     "theory": 841,
     "tools": 19,
     "values": 1406,
-    "tests": 26147,
+    "tests": 26099,
     "plugins": 3228,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
-MOST_FILES = 329
+MOST_FILES = 328
 """Files that the package may have."""
 SPARE = 0.02
 """Share of a limit by which a room may lie below it before the limit is lowered."""

@@ -22,7 +22,7 @@ import hashlib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -209,48 +209,6 @@ def _wrong_row(before: list[float], omega: float, value: complex) -> str:
 ComplexValues = NDArray[Any]
 
 
-class LinearBody(Protocol):
-    """Body whose x1 depends linearly on the force.
-
-    mass, damping: those of its response to high frequencies, 1/(mass p^2 + damping p + ...). known_to:
-    frequency above which ``beyond`` is the response, analytic in p where Re(p/i) is at least that. fastest:
-    frequency above which the body does not swing by itself. detail: frequency up to which its response in
-    time has details. smooth: true if its response to a jump of force is analytic just after the jump.
-    dissipates: true if it dissipates at every frequency.
-    """
-
-    @property
-    def mass(self) -> float: ...
-
-    @property
-    def damping(self) -> float: ...
-
-    @property
-    def known_to(self) -> float: ...
-
-    @property
-    def fastest(self) -> float: ...
-
-    @property
-    def smooth(self) -> bool: ...
-
-    @property
-    def dissipates(self) -> bool: ...
-
-    @property
-    def detail(self) -> float: ...
-
-    def __hash__(self) -> int: ...
-
-    def receptance(self, omega: Floats) -> ComplexValues:
-        """Compute x1 over force at these circular frequencies >= 0."""
-        ...
-
-    def beyond(self, p: ComplexValues) -> ComplexValues:
-        """Compute x1 over force as a function of p = i omega, beyond ``known_to``."""
-        ...
-
-
 @dataclass(frozen=True)
 class RememberingBody:
     """Body of mass 1, spring, dashpot, and beside them a relaxing and a fractional element."""
@@ -316,11 +274,21 @@ class RememberingBody:
         return 1.0 / self.dynamic_stiffness(p)
 
 
+LinearBody = TabulatedBody | RememberingBody
+"""Body whose x1 depends linearly on the force.
+
+mass, damping: those of its response to high frequencies, 1/(mass p^2 + damping p + ...). known_to: frequency above
+which ``beyond`` is the response, analytic in p where Re(p/i) is at least that. fastest: frequency above which the
+body does not swing by itself. detail: frequency up to which its response in time has details. smooth: true if its
+response to a jump of force is analytic just after the jump. dissipates: true if it dissipates at every frequency.
+"""
+
+
 def linear_body(scene: Any) -> LinearBody:
     """Return the linear body of a scene along x1."""
     body = scene.body
     if body is not None and body.receptance is not None:
-        measured: LinearBody = body.receptance.body()
+        measured: TabulatedBody = body.receptance.body()
         return measured
     remembers = {} if body is None else {"relaxation": body.relaxation, "fractional": body.fractional}
     return RememberingBody(2.0 * scene.damping_ratio, **remembers)

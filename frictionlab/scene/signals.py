@@ -88,13 +88,10 @@ class Signal(NamedTuple):
     def mean(self) -> float:
         """Mean over time."""
         total = 0.0
-        for piece in self.pieces:
-            ends = [*(line.start for line in piece.lines[1:]), piece.lines[0].start + piece.period]
-            lengths = (end - line.start for line, end in zip(piece.lines, ends, strict=True))
-            means = (
-                (line.value + 0.5 * line.slope * d) * d for line, d in zip(piece.lines, lengths, strict=True)
-            )
-            total += sum(means) / piece.period
+        for period, lines in self.pieces:
+            ends = [*(line.start for line in lines[1:]), lines[0].start + period]
+            for (start, value, slope), end in zip(lines, ends, strict=True):
+                total += (value + 0.5 * slope * (end - start)) * (end - start) / period
         return total
 
     def corners(self, end: float) -> list[float]:

@@ -31,38 +31,33 @@ class WaveLine(NamedTuple):
     """Straight part of a waveform: start [turns, from 0 to below 1], value there, slope per turn."""
 
     start: Fraction
-    value: Fraction | int
-    slope: Fraction | int
+    value: Fraction
+    slope: Fraction
 
 
 class WaveShape(NamedTuple):
     """Waveform with a name, for theta = 2 pi turns.
 
-    formula: in theta. words: its name in a sentence. lines: those between its corners, in order; none for the
-    sine.
+    formula: in theta. words: its name in a sentence. of, share: the shape that it is one of, and the share of the
+    period for which that is 1 (square) or rises (sawtooth); none for the sine.
     """
 
     formula: str
     words: str
-    lines: tuple[WaveLine, ...] = ()
+    of: str = ""
+    share: Fraction = Fraction(1, 2)
 
 
+_RISES = "rises evenly from -1 to 1, through 0 at theta = 0; jumps at theta = pi"
 WAVE_SHAPES = {
     "sine": WaveShape("sin(theta)", "a sine"),
-    "square": WaveShape(
-        "1 in the first half of the period, -1 in the second",
-        "a square wave",
-        (WaveLine(Fraction(0), 1, 0), WaveLine(Fraction(1, 2), -1, 0)),
-    ),
-    "triangle": WaveShape(
-        "(2/pi) arcsin(sin(theta))",
-        "a triangle wave",
-        (WaveLine(Fraction(1, 4), 1, -4), WaveLine(Fraction(3, 4), -1, 4)),
-    ),
+    "square": WaveShape("1 in the first half of the period, -1 in the second", "a square wave", "square"),
+    "triangle": WaveShape("(2/pi) arcsin(sin(theta))", "a triangle wave", "sawtooth"),
     "sawtooth": WaveShape(
         "rises evenly from -1 to 1, through 0 at theta = 0; jumps at theta = pi",
         "a sawtooth",
-        (WaveLine(Fraction(1, 2), -1, 2),),
+        "sawtooth",
+        Fraction(1),
     ),
 }
 
@@ -138,16 +133,15 @@ class Form(NamedTuple):
     @property
     def lines(self) -> tuple[WaveLine, ...]:
         """Straight lines between its corners; none if it is a sum of sines."""
-        if self.numbers:
-            return _lines_between(self._corners())
-        return () if self.terms else WAVE_SHAPES[self.shape].lines
+        return () if self.terms or self.shape == "sine" else _lines_between(self._corners())
 
     def _corners(self) -> list[tuple[Fraction, Fraction]]:
         """Return the shares of the period and the values at its corners, a jump as two of the same share."""
         if self.shape == "points":
             return [(Fraction(share), Fraction(value)) for share, value in self._pairs]
-        share, one = Fraction(self.numbers[0]), Fraction(1)
-        if self.shape == "square":
+        _, _, of, usual = WAVE_SHAPES[self.shape]
+        share, one = Fraction(self.numbers[0]) if self.numbers else usual, Fraction(1)
+        if of == "square":
             return [(Fraction(0), one), (share, one), (share, -one), (one, -one)]
         return [(share / 2, one), (1 - share / 2, -one)]
 

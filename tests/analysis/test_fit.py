@@ -157,6 +157,14 @@ GOOD = {"belt_speed": [1.0, 2.0, 3.0], "mean_friction": [0.1, 0.2, 0.3]}
             {"belt_speeds": [1.0], "mean_friction": [1.0]},
             "'belt_speed' is missing.*did you mean 'belt_speeds'",
         ),
+        (
+            GOOD | {"scene.drive.unbalanse": [1.0] * 3},
+            "no number of a scene is .*did you mean scene.drive.unbalance",
+        ),
+        (
+            GOOD | {"scene.dimensional.mass": [1.0] * 3},
+            "tells no unit: its name is scene.dimensional.mass_kg",
+        ),
         (GOOD | {"sigma": [1.0, 0.0, 1.0]}, "sigma must be > 0, got 0 in row 2"),
         (GOOD | {"block": ["a", "a", "a"]}, "all rows are of one block"),
         (GOOD | {"mean_friction": [0.1, np.nan, 0.3]}, "mean_friction is nan in row 2"),
@@ -313,3 +321,13 @@ def test_bad_studies_are_told(
     study.write_text(STUDY.replace(was, becomes))
     assert cli.main(["fit", str(study)]) == 2
     assert re.search(said, capsys.readouterr().err)
+
+
+def test_a_law_that_knows_no_rate_needs_no_times() -> None:
+    slip = np.sin(np.linspace(0.0, 12.0, 200))
+    friction = 0.5 * np.sign(np.diff(slip))
+    data = {"slip": slip[1:], "friction": friction}
+
+    assert fl.fit(data, fl.Coulomb(mu=0.3), free={"mu": (0.1, 1.0)}).values["mu"] == pytest.approx(0.5)
+    with pytest.raises(ValueError, match="LuGre depends on how quick slip is: the column 'time' is missing"):
+        fl.fit(data, fl.LuGre(mu_kinetic=0.3, stiffness=9, damping=1), free={"mu_kinetic": (0.1, 1.0)})

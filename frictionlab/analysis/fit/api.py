@@ -102,9 +102,9 @@ def fit(
     data : pandas.DataFrame, dict of str to array_like, or list of them
         Measurements. Either columns ``belt_speed`` (``belt_speed_m_per_s`` for a scene in SI units) and
         ``mean_friction``, or columns ``time``, ``slip`` [a length] and ``friction`` [-] for the law along a
-        measured path, without a body and a scene. Further columns are optional: ``sigma``, the standard error
-        of a row, ``block``, and ``scene.<path>``, a number of the scene of the row. ``mean_friction_N`` or
-        ``friction_N`` with ``normal_load_N`` replace a coefficient.
+        measured path, without a body and a scene; rate-independent laws need no ``time``. Further columns are
+        optional: ``sigma``, the standard error of a row, ``block``, and ``scene.<path>``, a number of the scene
+        of the row. ``mean_friction_N`` or ``friction_N`` with ``normal_load_N`` replace a coefficient.
     law : FrictionLaw or list of FrictionLaw
         Laws; numbers that are not free keep their value.
     scene : Scene, optional
@@ -168,6 +168,11 @@ def fit_measured(
     numbers = free_numbers(free, laws, scene)
     models = [Model(law, scene, numbers[place]) for place, law in enumerate(laws)]
     for model in models:
+        at_any_rate = getattr(model.law, "rate_independent", model.law.constant_sliding_friction)
+        if not measured.timed and not at_any_rate():
+            raise ValueError(
+                f"data: {model.label} depends on how quick slip is: the column 'time' is missing"
+            )
         if not model.free:
             raise ValueError(
                 f"free: {model.label} has none of {', '.join(free)}; leave it out or free a number of it"
@@ -190,7 +195,7 @@ def fit_measured(
         raw = residuals.raw(found.best.shares)
         if residuals.unanswered:
             failed[model.label] = (
-                f"{residuals.unanswered} of {len(raw)} rows have no mean friction at the optimum"
+                f"{residuals.unanswered} of {len(raw)} rows have no mean friction at the optimum: {residuals.why}"
             )
         else:
             fitted.append(FittedLaw(residuals, found, *blocks_of(measured, raw)))

@@ -14,9 +14,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from frictionlab.scene.dimensional import without_unit
+from frictionlab.scene.scene import Scene
 from frictionlab.values.columns import BELT_SPEEDS
 from frictionlab.values.notes import closest
 from frictionlab.values.quantities import Floats
+from frictionlab.values.validation import field_path, number_paths
 
 OF_A_PATH = ("time", "slip", "friction")
 """The columns that a path of slip needs."""
@@ -29,12 +32,14 @@ GAP = 3.0
 class Measurements:
     """Checked measurements, a row each. along: the columns of the model's inputs, ``scene.<path>`` among them.
 
-    value: the column that a law has to meet; missing: rows of a path that were left out.
+    value: the column that a law has to meet; missing: rows of a path that were left out. timed: False for a path
+    without times.
     """
 
     table: pd.DataFrame
     value: str
     missing: int = 0
+    timed: bool = True
 
     @property
     def is_path(self) -> bool:
@@ -130,7 +135,8 @@ def _is_a_number(text: Any) -> bool:
 
 
 def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
-    is_path = "time" in table or "slip" in table
+    is_path, timed = "time" in table or "slip" in table, "time" in table or "slip" not in table
+    table = table if timed else table.assign(time=np.arange(float(len(table))))
     speed = "belt_speed_m_per_s" if in_si else "belt_speed"
     table = _friction_over_load(table, is_path, where)
     wanted = OF_A_PATH if is_path else (speed, "mean_friction")
@@ -141,12 +147,14 @@ def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
                     f"{where}: its first line has numbers; write the names of the columns above them, such as"
                 )
                 raise WrongData(f"{told} {','.join(wanted)}")
+            there = f"the column '{name}' is missing, there are {', '.join(map(str, table.columns))}"
+            if (bare := without_unit(name)) in table:
+                raise WrongData(f"{where}: {there}; '{bare}' tells no unit: in m/s its name is {name}")
             hint = closest(name, list(table.columns))
-            did = f"; did you mean '{hint}'?" if hint else ""
-            raise WrongData(
-                f"{where}: the column '{name}' is missing, there are {', '.join(map(str, table.columns))}{did}"
-            )
+            raise WrongData(f"{where}: {there}{hint and f'; did you mean {hint!r}?'}")
     kept = [name for name in table if name in (*wanted, *OTHERS) or str(name).startswith("scene.")]
+    for name in kept:
+        _check_input(str(name), where)
     table = table[kept]
     for name in kept:
         if name != "block":
@@ -167,7 +175,18 @@ def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
         )
     if len(table) < 2:
         raise WrongData(f"{where}: at least two rows are needed, got {len(table)}")
-    return Measurements(table, wanted[-1], missing)
+    return Measurements(table, wanted[-1], missing, timed)
+
+
+def _check_input(name: str, where: str) -> None:
+    """Raise WrongData for a column of a scene that has no such number, or that tells no unit."""
+    path, known = name.removeprefix("scene."), number_paths(Scene)
+    if path == name or path in known:
+        return
+    if (whole := field_path(Scene, path)) in known:
+        raise WrongData(f"{where}: the column '{name}' tells no unit: its name is scene.{whole}")
+    hint = closest(path, known)
+    raise WrongData(f"{where}: no number of a scene is '{name}'{hint and f'; did you mean scene.{hint}?'}")
 
 
 def _friction_over_load(table: pd.DataFrame, is_path: bool, where: str) -> pd.DataFrame:

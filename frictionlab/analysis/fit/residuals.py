@@ -33,13 +33,17 @@ UNANSWERED_AS = 10.0
 
 @dataclass(eq=False)
 class Residuals:
-    """Of a model against measurements; counts how often the model was asked. error: that of its numbers, largest."""
+    """Of a model against measurements; counts how often the model was asked. error: that of its numbers, largest.
+
+    unanswered, why: rows without a number when last asked, and why the last one had none.
+    """
 
     model: Model
     measured: Measurements
     evaluations: int = 0
     error: float = 0.0
     unanswered: int = 0
+    why: str = ""
     _known: dict[bytes, Floats] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
@@ -59,7 +63,8 @@ class Residuals:
                 found = self._path(law) if self.measured.is_path else self._curve(law, scene)
             except CannotCompile:
                 raise
-            except (ValueError, ArithmeticError):  # numbers that make no law
+            except (ValueError, ArithmeticError) as problem:  # numbers that make no law
+                self.why = str(problem)
                 found = np.full(len(self.measured.values), math.nan)
             self._known[key] = found
         return self._known[key]
@@ -98,7 +103,11 @@ class Residuals:
         for changed, places in measured.groups:
             different, back = np.unique(given[places], return_inverse=True)
             here = Scenes(scene.with_(**changed) if changed else scene, different)
-            numbers = steady_states(here, law, FIT_TOLERANCE, ["mean_friction"]).numbers
+            part = steady_states(here, law, FIT_TOLERANCE, ["mean_friction"])
+            numbers, statuses = part.numbers, part.text["status"]
+            self.why = next(
+                (part.text["reason"][i] for i, each in enumerate(statuses) if each != "ok"), self.why
+            )
             found[places] = numbers["mean_friction"][back]
             self.error = max(self.error, float(np.nan_to_num(numbers["error"]).max()))
         return found
@@ -145,7 +154,8 @@ def search(
     same = [end for end in ends if _same(end, best)]
     others: list[Optimum] = []
     for end in sorted(ends, key=lambda end: end.cost):
-        if not any(_same(end, other) for other in [best, *others]) and end.cost < 4.0 * best.cost:
+        new = not any(_same(end, other) for other in [best, *others]) and end.cost < 4.0 * best.cost
+        if new and np.isfinite(residuals.said(end.shares)).all():  # else its numbers make no law
             others.append(end)
     return SearchEnds(best, others, len(same), starts)
 

@@ -395,7 +395,11 @@ def _how_sure(fit: FittedLaws) -> list[str]:
     block, naive = fit.block_errors, fit.naive_errors
     told = [
         f"{name} = {with_error(value, block[name])} (95 %: {low:.4g} to {high:.4g})"
-        for (name, value), (low, high) in zip(best.values.items(), best.intervals.values(), strict=True)
+        if block[name] <= number.high - number.low
+        else f"{name} = {value:.4g} (95 %: {low:.4g} to {high:.4g}; blocks tell less than its range)"
+        for number, (name, value), (low, high) in zip(
+            best.model.free, best.values.items(), best.intervals.values(), strict=True
+        )
     ]
     ratios = [block[name] / naive[name] for name in block if naive[name] > 0.0]
     if ratios and max(ratios) > 1.5:

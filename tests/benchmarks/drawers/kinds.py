@@ -25,7 +25,6 @@ KINDS = {
     "onsets": "onsets of curves of 40 points against scans ten times as dense",
     "reduced": "mdsm and harmonic_balance against exact and shooting",
     "chosen_speeds": "chosen belt speeds against the curve itself",
-    "proofs": "proofs of exact's means against its estimates",
     "steep_falls": "friction that falls faster than damping makes up for: whether what is ok is alone",
 }
 """Name of the campaign, of the others that of a module beside this one -> what it is about."""

@@ -25,7 +25,7 @@ LIMITS = {
     "tools": 19,
     "values": 1406,
     "tests": 26099,
-    "plugins": 3228,
+    "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""
 MOST_FILES = 328

@@ -30,15 +30,8 @@ BODY = fl.Scene(damping_ratio=0.4, normal_load=10, belt_speed=5, drive=fl.Drive(
 compiling = deep("more kernels to compile")
 
 
-def _marked(row: dict[str, str]) -> object:
-    """By default three elements on a body: one kernel."""
-    kind, count, *_ = row["name"].split("/")
-    quick = (kind, count) == ("body", "3")
-    return pytest.param(row, id=row["name"], marks=() if quick else compiling)
-
-
-@deep("more kernels to compile")
-@pytest.mark.parametrize("row", [_marked(row) for row in ROWS])
+@compiling
+@pytest.mark.parametrize("row", ROWS, ids=[row["name"] for row in ROWS])
 def test_the_mean_is_that_of_an_integration_from_event_to_event(row):
     law = GeneralisedMaxwellSlip(**json.loads(row["law"]))
 
@@ -71,6 +64,7 @@ def test_the_reference_of_constant_friction_is_maxwell_slip_along_a_line(name):
     assert off - float(row["accuracy"]) <= found.error <= TOLERANCE
 
 
+@compiling
 def test_equal_elements_of_constant_friction_are_jenkins_along_a_line():
     law = GeneralisedMaxwellSlip(share=[1, 1, 1], stiffness=[4 / 3] * 3, mu_kinetic=0.4, attraction=2)
 
@@ -137,6 +131,7 @@ def test_time_steps_which_remember_no_stick_are_refused():
     assert "march steps follow no stick or slip of single elements; shooting does" in found.reason
 
 
+@compiling
 def test_its_study_keeps_its_promises():
     done = fl.run(Path(__file__).parent / "study.yaml")
 

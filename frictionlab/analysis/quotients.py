@@ -41,16 +41,6 @@ class Pair(NamedTuple):
             if isinstance(value, float) and not path.endswith(_RATIO) and ".initial." not in path
         }
 
-    def later(self, degrees: float) -> Pair:
-        """The same loads seen from an instant at which the angle of the drive is so much larger."""
-        told = self.scene.given_values()
-        phases = {path: float(told[path]) for path in told if path.endswith(".phase")}
-        turned = {
-            path: phase + degrees * float(told.get(path.removesuffix("phase") + _RATIO, 1.0))
-            for path, phase in phases.items()
-        }
-        return self._replace(scene=self.scene.with_(**turned)) if degrees else self
-
     def with_(self, path: str, value: float) -> Pair:
         """Both with this number in place of theirs. Raises ValueError where it makes no scene or law."""
         owner, _, name = path.partition(".")
@@ -94,11 +84,10 @@ _Values = Callable[[Floats], list[Floats | None]]
 """The function at such offsets, each as an array; None where it has no value there."""
 
 _LEVELS = 4
-MAPS_PER_TRY = 2 * _LEVELS
 _NARROWER = 8.0
 """By how much the offsets shrink from one try to the next."""
 _MOST_TRIES = 6
-CORNER = "the period map has no derivative by it here: the two one-sided ones differ"
+CORNER = "there is no derivative here: the two one-sided ones differ"
 NO_VALUES = "there are no values close to this one on either side"
 _PARTS = 0.5 ** np.arange(_LEVELS)
 _AMPLIFIED = 8.0

@@ -93,7 +93,7 @@ def _judge(
     if failed:
         text["status"][i], text["reason"][i] = "failed", failed
         text["error_kind"][i] = text["unique"][i] = ""
-        for column in numbers.values():
+        for column in numbers.values() if other is not None else ():
             column[i] = np.nan
 
 

@@ -477,7 +477,9 @@ class Scene(ScenePart):
             If no spring holds the body: it is solved on ever softer springs.
         """
         if self.is_free:
-            raise ValueError("a body without a spring is followed on soft springs alone")
+            raise ValueError(
+                "a body without a spring is solved by runs, curves and steady states: give it a soft one here"
+            )
         assert self.normal_load is not None
         damping_ratio = self.damping_ratio or 0.0
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)

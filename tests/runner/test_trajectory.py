@@ -126,4 +126,3 @@ def test_an_undriven_motion_on_bristles_is_that_of_an_unrelated_integration() ->
 
     known = solve_ivp(rates, (0.0, times[-1]), [6.0, 0.0, 0.0], "DOP853", times, rtol=1e-11, atol=1e-12)
     assert motion.x1.to_numpy() == pytest.approx(known.y[0], abs=1e-6)
-    assert set(motion.events["event"]) == {"reversal"}

@@ -31,6 +31,7 @@ from frictionlab.study.grid import StudyCurve, law_in_scene
 from frictionlab.study.parts import coefficient_of
 from frictionlab.study.study import Study
 from frictionlab.values.columns import BELT_SPEEDS, NEEDS
+from frictionlab.values.notes import Mistake, StudyError
 from frictionlab.values.printable import with_error
 from frictionlab.values.quantities import Dimension, Written, dimensions
 from frictionlab.values.units import ShownUnit, handy_unit, unit_of_dimension, units_written
@@ -346,6 +347,10 @@ def _label(study: Study, curve: StudyCurve) -> str:
 
 def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _Asked) -> Needs:
     scene, scenes = scenes.scene, Scenes(scenes.scene, np.unique(scenes.given))
+    if scene.is_free:
+        raise StudyError(
+            [Mistake("needs", None, "scene", "takes no body without a spring: give it a soft one")]
+        )
     si = scene.dimensional
     units = None if si is None else GivenUnits(si.scales, asked.speed or ShownUnit("m/s"))
     full = LesserModel(scene.model_copy(update={"dimensional": None}), law_in_scene(law, scene))

@@ -1,16 +1,19 @@
-"""From a bench list (YAML) to a frozen Bench, or to every mistake in it at once, each with its line."""
+"""From a bench list (YAML) to a frozen Bench, or to a mistake in it, with its line."""
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
-from typing import Annotated, Any, TypeVar
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, NoReturn, TypeVar
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from frictionlab.bench.curve import BenchCurve, BenchedModel, ModelsSection
 from frictionlab.bench.failure_maps import FailureMap, MapTruth, NamedPoint
@@ -35,14 +38,15 @@ from frictionlab.study.parts import items, method_choice
 from frictionlab.study.study import Study
 from frictionlab.study.yaml_source import Source, read_file
 from frictionlab.values import columns
-from frictionlab.values.notes import KeyPath, Mistake, Notes, StudyError, dotted
+from frictionlab.values.notes import KeyPath, Notes, StudyError, dotted
 from frictionlab.values.quantities import Positive, Record
 from frictionlab.values.validation import build_record
 
-BENCH_SCHEMA = 1
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
 OF_A_STUDY = ("scene", "laws", "sweep")
 
+ALL_OF_IT = BeforeValidator(lambda given: {} if given is True else given)
+"""Reads ``true`` as all that a section has."""
 Many = Annotated[tuple[Any, ...], FILLED]
 
 
@@ -58,19 +62,6 @@ class Measured(Record):
     references: tuple[Any, ...] = ()
     methods: Many = ()
     peers: Many = ()
-
-
-class ListKeys(Measured):
-    """The keys of a list, but for its schema."""
-
-    title: str = ""
-    scenes: Many = ()
-    repeats: AtLeastOne = 30
-    seconds: Positive = 2.0
-    orders: Any = None
-    stability: Any = None
-    failures: Many = ()
-    models: Many = ()
 
 
 class ListItem(Measured):
@@ -93,7 +84,7 @@ class MapBlock(ListItem):
     """An item of ``failures``."""
 
     sweep: Any
-    points: Many = ()
+    points: Annotated[tuple[dict[str, Any], ...], FILLED] = ()
 
 
 class ModelsBlock(ListItem):
@@ -106,11 +97,31 @@ class ModelsBlock(ListItem):
     seconds: Positive = 1.0
 
 
+class ListKeys(Measured):
+    """The keys of a list."""
+
+    schema_version: Literal[1] = Field(alias="schema")
+    title: str = ""
+    scenes: Many = ()
+    repeats: AtLeastOne = 30
+    seconds: Positive = 2.0
+    orders: Annotated[OrdersSection | None, ALL_OF_IT] = None
+    stability: Annotated[StabilityMaps | None, ALL_OF_IT] = None
+    failures: Many = ()
+    models: Many = ()
+
+
 class Asked(Record):
     """What a method or peer is asked for beside its own parameters."""
 
     tolerance: Positive = 1e-8
     points: AtLeastOne | None = None
+
+
+class Closely(Record):
+    """How closely a reference is asked for."""
+
+    tolerance: Positive
 
 
 class ValuesOfFile(Record):
@@ -121,16 +132,13 @@ class ValuesOfFile(Record):
     label: str = ""
 
 
-_KeysT = TypeVar("_KeysT", bound=Measured)
+_RecordT = TypeVar("_RecordT", bound=Record)
 
 
 def load_bench(path: FilePath) -> Bench:
-    """The bench list of this file. Raises StudyError with every mistake."""
+    """The bench list of this file. Raises StudyError with the mistakes of the first block that has any."""
     source = _source(path)
-    reader = _Reader(source, path.parent, Notes(source.notes))
-    title, sections = reader.read(source.tree)
-    if mistakes := reader.mistakes + source.located(reader.notes.all):
-        raise StudyError(_each_once(mistakes))
+    title, sections = _Reader(source, path.parent).read(source.tree)
     return Bench(path.stem, title, tuple(sections))
 
 
@@ -143,65 +151,58 @@ def _source(path: FilePath) -> Source:
         raise StudyError(said) from None
 
 
-def _each_once(mistakes: list[Mistake]) -> list[Mistake]:
-    """In the order of the file; what several scenes refer to is told for the first of them."""
-    found = {(mistake.place, mistake.what): mistake for mistake in reversed(mistakes)}
-    return sorted(found.values(), key=lambda mistake: mistake.place or (float("inf"), 0))
-
-
-@dataclass
+@dataclass(frozen=True)
 class _Reader:
-    """One pass over the values of a list; mistakes: those of the studies in it, located."""
+    """One pass over the values of a list, up to the first mistake."""
 
     source: Source
     folder: FilePath
-    notes: Notes
-    mistakes: list[Mistake] = field(default_factory=list)
 
     def read(self, tree: Any) -> tuple[str, list[Section]]:
-        """The title, and every section; empty where there are mistakes."""
-        notes, names = self.notes, ListKeys.model_fields
-        if notes.mapping(tree, (), ("schema", *names)) is None:
-            return "", []
-        sections = tree.keys() & {"orders", "stability", "failures", "models"}
-        notes.head(tree, ["schema"] if sections else ["schema", "scenes"], BENCH_SCHEMA)
-        told = {key: value for key, value in tree.items() if key in names}
-        if (keys := build_record(ListKeys, told, (), notes)) is None:
-            return "", []
-        found = [*self._curves(keys), *self._records(keys), *self._maps(keys), *self._models(keys)]
-        self._note_equal([section.name for section in found], ("scenes",))
+        """The title, and every section."""
+        keys = self._record(ListKeys, tree, ())
+        orders, stability = (each.sections() if each else () for each in (keys.orders, keys.stability))
+        found = [*self._curves(keys), *orders, *stability, *self._maps(keys), *self._models(keys)]
+        self._refuse_equal([section.name for section in found], ("scenes",))
         return keys.title, found
 
-    def _records(self, keys: ListKeys) -> Iterator[Section]:
-        """Sections that are one record each; ``true`` asks for all they have."""
-        for head, kind in (("orders", OrdersSection), ("stability", StabilityMaps)):
-            if (given := getattr(keys, head)) is None:
-                continue
-            made: Any = build_record(kind, {} if given is True else given, (head,), self.notes)
-            if made is not None:
-                yield from made.sections()
+    def _wrong(self, path: KeyPath, what: str) -> NoReturn:
+        """Refuse the value at this path."""
+        notes = Notes(self.source.notes)
+        notes.add(path, what)
+        raise StudyError(self.source.located(notes.all))
+
+    @contextmanager
+    def _noted(self) -> Iterator[Notes]:
+        """Notes of mistakes, which are raised at the end."""
+        notes = Notes(self.source.notes)
+        yield notes
+        if notes.all:
+            raise StudyError(self.source.located(notes.all))
+
+    def _record(self, kind: type[_RecordT], given: Any, path: KeyPath) -> _RecordT:
+        """The record of these keys."""
+        with self._noted() as notes:
+            made = build_record(kind, given, path, notes)
+        assert made is not None
+        return made
 
     # --- blocks: a study each -------------------------------------------------------------------------------------
 
-    def _blocks(self, kind: type[_KeysT], keys: ListKeys, head: str) -> Iterator[tuple[KeyPath, _KeysT]]:
-        """The blocks of a key of the list, with their places; none whose own keys are wrong."""
-        for index, given in enumerate(getattr(keys, head)):
-            if (block := build_record(kind, given, (head, index), self.notes)) is not None:
-                yield (head, index), block
+    def _blocks(self, kind: type[_RecordT], head: str, given: Many) -> Iterator[tuple[KeyPath, _RecordT]]:
+        """The blocks of a key of the list, with their places."""
+        for index, each in enumerate(given):
+            yield (head, index), self._record(kind, each, (head, index))
 
     def _curves(self, keys: ListKeys) -> Iterator[Section]:
         """A curve for each law of each scene; what a scene does not say holds for all."""
-        if not keys.scenes:
-            return
         shared, trusted = self._contenders(keys, ()), self._references(keys, ())
-        for path, block in self._blocks(CurveBlock, keys, "scenes"):
-            references = self._references(block, path) or trusted
+        for path, block in self._blocks(CurveBlock, "scenes", keys.scenes):
             contenders = self._measured(block, path, shared)
-            if not references and not self.notes.all:
-                self.notes.add(path, "no references: give a method or values to measure errors against")
+            references = self._references(block, path) or trusted
+            if not references:
+                self._wrong(path, "no references: give a method or values to measure errors against")
             study = self._curve(_told(block), path)
-            if study is None:
-                continue
             for label, work in _workloads(study, contenders, references, (keys.repeats, keys.seconds)):
                 name = block.name if len(study.laws) == 1 else f"{block.name} {label}"
                 yield BenchCurve(name, block.title, work)
@@ -209,64 +210,51 @@ class _Reader:
     def _maps(self, keys: ListKeys) -> list[Section]:
         """A section for each method and peer that a list of maps names."""
         found = list[tuple[MapTruth, Sequence[Contender]]]()
-        for path, block in self._blocks(MapBlock, keys, "failures"):
+        for path, block in self._blocks(MapBlock, "failures", keys.failures):
             contenders = self._measured(block, path)
-            references = self._references(block, path, files=False)
-            for contender in (each for each in contenders if len(each.solvers) > 1):
-                told = f"'{contender.label}': a map takes one setting; give each a label of its own"
-                self.notes.add((*path, f"{contender.side}s"), told)
+            for each in (each for each in contenders if len(each.solvers) > 1):
+                told = f"'{each.label}': a map takes one setting; give each a label of its own"
+                self._wrong((*path, f"{each.side}s"), told)
             study = self._study(_told(block), path)
-            paths = None if study is None else self._swept(study, path)
-            if study is not None and paths is not None:
-                points = tuple(self._points(block, path, paths))
-                drawn = FailureMap(block.name, block.title, study, *paths, points, references)
-                found.append((MapTruth(drawn), contenders))
-        self._note_equal([truth.drawn.name for truth, _ in found], ("failures",))
+            paths = self._swept(study, path)
+            points, references = self._points(block, path, paths), self._references(block, path, files=False)
+            drawn = FailureMap(block.name, block.title, study, *paths, tuple(points), references)
+            found.append((MapTruth(drawn), contenders))
+        self._refuse_equal([truth.drawn.name for truth, _ in found], ("failures",))
         return [*failure_sections(found)]
 
-    def _swept(self, study: Study, path: KeyPath) -> tuple[str, str] | None:
+    def _swept(self, study: Study, path: KeyPath) -> tuple[str, str]:
         """The path of the belt speed and that of the other quantity."""
         if len(study.laws) != 1:
-            self.notes.add((*path, "laws"), f"a map has one law, got {len(study.laws)}")
-            return None
+            self._wrong((*path, "laws"), f"a map has one law, got {len(study.laws)}")
         speeds = [name for name in study.sweep if name in columns.BELT_SPEEDS]
         others = [name for name in study.sweep if name not in columns.BELT_SPEEDS]
         plain = all(isinstance(value, float | int) for name in others for value in study.sweep[name])
         if len(speeds) != 1 or len(others) != 1 or not plain:
-            self.notes.add((*path, "sweep"), "a map sweeps the belt speed and one other number")
-            return None
+            self._wrong((*path, "sweep"), "a map sweeps the belt speed and one other number")
         return speeds[0], others[0]
 
     def _points(self, block: MapBlock, path: KeyPath, paths: tuple[str, str]) -> Iterator[NamedPoint]:
         """``[{name: S2, scene.belt_speed: 0.5, scene.normal_load: 10}]``."""
-        notes, keys = self.notes, ("name", *paths)
         for index, item in enumerate(block.points):
-            at: KeyPath = (*path, "points", index)
-            if notes.mapping(item, at, keys) is None:
-                continue
-            for key in (key for key in keys if key not in item):
-                notes.add((*at, key), "required key is missing")
-            name = notes.text(item.get("name", ""), (*at, "name"))
-            speed, value = (notes.number(item.get(key, 1.0), (*at, key)) for key in paths)
-            if speed is not None and value is not None:
-                yield NamedPoint(name, speed, value)
+            if item.keys() != {"name", *paths}:
+                told = f"give name, {paths[0]} and {paths[1]}, no other keys"
+                self._wrong((*path, "points", index), told)
+            yield NamedPoint(str(item["name"]), *(float(item[key]) for key in paths))
 
     def _models(self, keys: ListKeys) -> Iterator[Section]:
         """Of each scene: the first law on all of it is the richest model, which the others are held against."""
-        for path, block in self._blocks(ModelsBlock, keys, "models"):
+        for path, block in self._blocks(ModelsBlock, "models", keys.models):
             contenders = self._measured(block, path)
             references = self._references(block, path, files=False)
             found = list[BenchedModel]()
             for lacking, told in self._scenes(block, path):
-                if (study := self._curve(told, path)) is None:
-                    continue
+                study = self._curve(told, path)
                 if not study.sweep:
-                    what = "models are compared along one curve: sweep the belt speed"
-                    self.notes.add((*path, "sweep"), what)
+                    self._wrong((*path, "sweep"), "models are compared along one curve: sweep the belt speed")
                 works = _workloads(study, contenders, references, (block.repeats, block.seconds))
                 found += [BenchedModel(label, lacking, work) for label, work in works]
-            if found:
-                yield ModelsSection(f"models_{file_stem(block.name)}", block.title, tuple(found))
+            yield ModelsSection(f"models_{file_stem(block.name)}", block.title, tuple(found))
 
     def _scenes(self, block: ModelsBlock, path: KeyPath) -> Iterator[tuple[str, dict[str, Any]]]:
         """The study of a block, and that without each part of the scene that simpler ones lack."""
@@ -275,22 +263,17 @@ class _Reader:
         for index, part in enumerate(block.without):
             if (left := _cut(block.scene, part)) is None:
                 what = f"the scene has no '{part}'; give the path of a key of it"
-                self.notes.add((*path, "without", index), what)
-            else:
-                yield f"without {part}", told | {"scene": left}
+                self._wrong((*path, "without", index), what)
+            yield f"without {part}", told | {"scene": left}
 
-    def _curve(self, told: dict[str, Any], path: KeyPath) -> Study | None:
+    def _curve(self, told: dict[str, Any], path: KeyPath) -> Study:
         """The study of a block that sweeps the belt speed alone."""
-        sweep = told.get("sweep")
-        stray = [key for key in sweep if key not in columns.BELT_SPEEDS] if isinstance(sweep, dict) else []
-        for key in stray:
-            self.notes.on_key((*path, "sweep", key), "a bench curve sweeps the belt speed alone")
-        if isinstance(sweep, dict) and stray:  # their own mistakes matter no more
-            told = {**told, "sweep": {key: value for key, value in sweep.items() if key not in stray}}
         study = self._study(told, path)
-        return None if stray else study
+        if not study.sweep.keys() <= {*columns.BELT_SPEEDS}:
+            self._wrong((*path, "sweep"), "a bench curve sweeps the belt speed alone")
+        return study
 
-    def _study(self, told: dict[str, Any], path: KeyPath) -> Study | None:
+    def _study(self, told: dict[str, Any], path: KeyPath) -> Study:
         """The scene, laws and sweep as the study they are, read by the study's own reader."""
         keys, values = (
             {at[len(path) :]: place for at, place in places.items() if at[: len(path)] == path}
@@ -300,20 +283,19 @@ class _Reader:
             return read_study(Source(self.source.name, self.source.text, told, keys, values))
         except StudyError as problem:
             head = dotted(path)
-            self.mistakes += [
-                replace(each, path=f"{head}.{each.path}".removesuffix(".")) for each in problem.mistakes
-            ]
-            return None
+            paths = [f"{head}.{each.path}".removesuffix(".") for each in problem.mistakes]
+            said = [replace(each, path=at) for each, at in zip(problem.mistakes, paths, strict=True)]
+            raise StudyError(said) from None
 
     # --- who is measured ------------------------------------------------------------------------------------------
 
     def _measured(
-        self, block: ListItem, path: KeyPath, shared: dict[str, Contender] | None = None
+        self, block: ListItem, path: KeyPath, shared: Mapping[str, Contender] = MappingProxyType({})
     ) -> tuple[Contender, ...]:
         """The methods and peers of a block, and those of all."""
-        found = (shared or {}) | self._contenders(block, path)
-        if not found and not self.notes.all:
-            self.notes.add(path, "no methods and no peers: there is nothing to measure")
+        found = {**shared, **self._contenders(block, path)}
+        if not found:
+            self._wrong(path, "no methods and no peers: there is nothing to measure")
         return tuple(found.values())
 
     def _contenders(self, told: Measured, path: KeyPath) -> dict[str, Contender]:
@@ -323,105 +305,85 @@ class _Reader:
             for index, item in enumerate(getattr(told, head)):
                 at: KeyPath = (*path, head, index)
                 made = self._contender({"kind": item} if isinstance(item, str) else item, at, head)
-                if made is not None and made.label in found:
-                    self.notes.add(at, f"'{made.label}' is there already; give each its own label")
-                elif made is not None:
-                    found[made.label] = made
+                if made.label in found:
+                    self._wrong(at, f"'{made.label}' is there already; give each its own label")
+                found[made.label] = made
         return found
 
-    def _contender(self, item: Any, path: KeyPath, head: str) -> Contender | None:
+    def _contender(self, item: Any, path: KeyPath, head: str) -> Contender:
         """A method or peer; one of its values may be a list, which is run through."""
-        if self.notes.mapping(item, path) is None:
-            return None
+        with self._noted() as notes:
+            notes.mapping(item, path)
         varied = [key for key in item if isinstance(item[key], list) and key != "points"]
         if len(varied) > 1:
-            self.notes.add((*path, varied[1]), f"only one value may be a list, and {varied[0]} is one")
-            return None
+            self._wrong((*path, varied[1]), f"only one value may be a list, and {varied[0]} is one")
         quantity = varied[0] if varied else ""
-        values = items(item[quantity], (*path, quantity), "[1.0e-6]", self.notes) if varied else [0.0]
+        with self._noted() as notes:
+            values = items(item[quantity], (*path, quantity), "[1.0e-6]", notes) if varied else [0.0]
         solvers, points = list[tuple[BenchSetting, Method | Peer]](), None
         for value in values:
             each = item | {quantity: value} if varied else item
             asked = {key: each[key] for key in Asked.model_fields if key in each}
-            setting = build_record(Asked, asked, path, self.notes)
-            told = {key: value for key, value in each.items() if key not in asked}
-            solver = self._peer(told, path) if head == "peers" else self._method(told, path)
-            if setting is None or solver is None or self.notes.below(path):
-                return None
+            setting = self._record(Asked, asked, path)
+            solver = self._solver({key: each[key] for key in each if key not in asked}, path, head)
             solvers.append((BenchSetting(quantity, float(value), setting.tolerance), solver))
             points = setting.points
         kind = str(item["kind"])
-        return Contender(str(item.get("label", kind)), kind, tuple(solvers), points) if solvers else None
+        return Contender(str(item.get("label", kind)), kind, tuple(solvers), points)
 
-    def _method(self, told: dict[str, Any], path: KeyPath) -> Method | None:
+    def _solver(self, told: dict[str, Any], path: KeyPath, head: str) -> Method | Peer:
+        """The method, or of the head ``peers`` the peer, of these parameters."""
+        if head == "peers":
+            with self._noted() as notes:
+                name = notes.one_of(told.get("kind"), (*path, "kind"), PEERS)
+            parameters = {key: value for key, value in told.items() if key not in ("kind", "label")}
+            return self._record(PEERS[str(name)], parameters, path)
         if told.get("kind") == "auto":
-            self.notes.add((*path, "kind"), "auto only chooses: name the methods it chooses from")
-            return None
-        choice = method_choice(told, path, self.notes)
-        return None if choice is None else choice.method
-
-    def _peer(self, told: dict[str, Any], path: KeyPath) -> Peer | None:
-        name = self.notes.one_of(told.get("kind"), (*path, "kind"), PEERS)
-        if name is None or not self.notes.text(told.get("label", name), (*path, "label")):
-            return None
-        parameters = {key: value for key, value in told.items() if key not in ("kind", "label")}
-        return build_record(PEERS[name], parameters, path, self.notes)
+            self._wrong((*path, "kind"), "auto only chooses: name the methods it chooses from")
+        with self._noted() as notes:
+            choice = method_choice(told, path, notes)
+        assert choice is not None
+        return choice.method
 
     # --- references -----------------------------------------------------------------------------------------------
 
     def _references(self, told: Measured, path: KeyPath, files: bool = True) -> tuple[ReferenceSource, ...]:
         """The references of a list or of one of its blocks; files: whether a table of values is of use."""
         places = [(*path, "references", index) for index in range(len(told.references))]
-        read = [self._reference(item, at, files) for item, at in zip(told.references, places, strict=True)]
-        return tuple(trusted for trusted in read if trusted is not None)
+        return tuple(
+            self._reference(item, at, files) for item, at in zip(told.references, places, strict=True)
+        )
 
-    def _reference(self, item: Any, path: KeyPath, files: bool) -> ReferenceSource | None:
-        if self.notes.mapping(item, path) is None:
-            return None
+    def _reference(self, item: Any, path: KeyPath, files: bool) -> ReferenceSource:
+        with self._noted() as notes:
+            notes.mapping(item, path)
+        if "values" in item and not files:
+            self._wrong(path[:-1], "give methods: a table of values knows one curve of one model alone")
         if "values" in item:
-            return self._values(item, path, files)
-        if "tolerance" not in item:
-            self.notes.add((*path, "tolerance"), "required key is missing")
-            return None
-        asked = build_record(Asked, {"tolerance": item["tolerance"]}, path, self.notes)
+            known = self._record(ValuesOfFile, item, path)
+            table = self._table(self.folder / known.values, (*path, "values"))
+            return ReferenceSource(known.label or known.values, "", None, known.error, table)
+        closely = self._record(Closely, {key: item[key] for key in item if key == "tolerance"}, path)
         told = {key: value for key, value in item.items() if key != "tolerance"}
-        solver = self._peer(told, path) if told.get("kind") in PEERS else self._method(told, path)
-        if solver is None or asked is None:
-            return None
-        label = f"{told.get('label', solver.name)} at {asked.tolerance:g}"
-        return ReferenceSource(label, solver.name, solver, asked.tolerance, {})
+        solver = self._solver(told, path, "peers" if told.get("kind") in PEERS else "methods")
+        label = f"{told.get('label', solver.name)} at {closely.tolerance:g}"
+        return ReferenceSource(label, solver.name, solver, closely.tolerance, {})
 
-    def _values(self, item: dict[str, Any], path: KeyPath, files: bool) -> ReferenceSource | None:
-        if not files:
-            self.notes.add(path[:-1], "give methods: a table of values knows one curve of one model alone")
-            return None
-        told = build_record(ValuesOfFile, item, path, self.notes)
-        table = None if told is None else self._table(self.folder / told.values, (*path, "values"))
-        if told is None or table is None:
-            return None
-        return ReferenceSource(told.label or told.values, "", None, told.error, table)
-
-    def _table(self, file: FilePath, path: KeyPath) -> dict[float, float] | None:
+    def _table(self, file: FilePath, path: KeyPath) -> dict[float, float]:
         """Mean friction by belt speed."""
         try:
             with file.open(encoding="utf-8", newline="") as text:
                 rows = [[float(row[name]) for name in REFERENCE_COLUMNS] for row in csv.DictReader(text)]
-        except OSError as problem:
-            self.notes.add(path, f"cannot be read: {problem.strerror}")
-        except (KeyError, TypeError, ValueError):
+        except (OSError, KeyError, TypeError, ValueError) as problem:
             named = " and ".join(REFERENCE_COLUMNS)
-            self.notes.add(path, f"must be a CSV file of numbers with the columns {named}")
-        else:
-            return {speed: mean for speed, mean in rows}
-        return None
+            self._wrong(path, f"must be a CSV file of numbers with the columns {named}: {problem}")
+        return {speed: mean for speed, mean in rows}
 
-    def _note_equal(self, names: Sequence[str], path: KeyPath) -> None:
-        """Two of one name would be written to one file."""
-        stems = [file_stem(name).casefold() for name in names]
-        for place, name in enumerate(names):
-            if (first := stems.index(stems[place])) != place:
-                what = f"'{names[first]}' and '{name}' would both be written to {file_stem(name)}"
-                self.notes.add(path, f"{what}; give each a name of its own")
+    def _refuse_equal(self, names: Sequence[str], path: KeyPath) -> None:
+        """Refuse two of one name, which would be written to one file."""
+        for stem, count in Counter(file_stem(name).casefold() for name in names).items():
+            if count > 1:
+                self._wrong(path, f"{count} would be written to {stem}.csv; give each a name of its own")
 
 
 def _told(block: ListItem) -> dict[str, Any]:

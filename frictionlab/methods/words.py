@@ -99,7 +99,7 @@ class ModelWord(StrEnum):
         "harmonics by samples",
         "harmonics of motion and of friction balanced on samples of a period, those beyond left out",
     )
-    SOFT_SPRINGS = "soft springs", "a body without a spring, as the limit of four ever softer ones"
+    SOFT_SPRINGS = "soft springs", "a body without a spring, as the limit of three ever softer ones"
     EQUIVALENT_DRIVE = "equivalent drive", "the belt's vibration as the drive that is equivalent to it"
     DAMPED = (
         "unique: damped",
@@ -120,6 +120,7 @@ class ModelWord(StrEnum):
     )
     BY_SLIP = "unique: slip", "unique: friction hangs on the prescribed slip alone"
     CHEAPEST = "cheapest", "it accepts the scene, and no method is cheaper"
+    CLOSER = "closer", "on soft springs the cheapest method has errors above the tolerance"
     MEMORY = "memory of friction", "exact needs friction without memory (Coulomb)"
     SPEED = "friction by speed", "exact needs friction that does not vary with speed (Coulomb)"
     STATIC = "static friction", "exact needs static friction equal to sliding friction (no mu_static)"

@@ -6,10 +6,10 @@ It is the speed of a belt, the other way, over which no mean force holds the bod
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -132,6 +132,8 @@ def drift_of(
         if low < high:
             brentq(balance, low, high, xtol=CLOSE * scale)
         best = min(balance.seen, key=lambda each: abs(each.left))
+        if best.left == best.error == 0.0:  # friction holds the body
+            return Drift(best.speed, 0.0)
         near = balance.nearest(best.speed, NEAR * scale)
     except _NoDriftError as problem:
         return Drift(math.nan, math.nan, str(problem))
@@ -235,15 +237,11 @@ def drift_speed(
     si = scene.dimensional
     speed_unit, force_unit = (1.0, 1.0) if si is None else (si.scales.velocity, si.scales.force)
     pushed = _number("force", force, "N", scene) / force_unit
-    ends = (
-        None
-        if within is None
-        else sorted(_number("within", one, "m/s", scene) / speed_unit for one in within)
-    )
+    ends = None if within is None else _ends(within, scene, speed_unit)
     chunk = Chunk(
         Scenes.of([scene]), law_in_scene(law, scene), ready, Task(given_tolerance(tolerance), columns=COLUMNS)
     )
-    found = obeying(math.inf, drift_of, chunk, solve, pushed, ends and (ends[0], ends[1]))
+    found = obeying(math.inf, drift_of, chunk, solve, pushed, ends)
     if found.reason:
         raise ValueError(found.reason)
     speed = found.speed * speed_unit
@@ -253,6 +251,16 @@ def drift_speed(
 def _number(name: str, value: float | str, unit: str, scene: Scene) -> float:
     """Return the number that is given, as text with a unit, too, where the scene is in SI units."""
     read = in_units(value, unit) if isinstance(value, str) and scene.dimensional is not None else value
-    if isinstance(read, Unfit | bool) or not isinstance(read, Real):
+    if isinstance(read, Unfit | bool) or not isinstance(read, Real) or not math.isfinite(read):
         raise ValueError(f"{name}: {getattr(read, 'what', 'must be a number')}, got {python_text(value)}")
     return float(read)
+
+
+def _ends(within: Any, scene: Scene, unit: float) -> tuple[float, float]:
+    """Return the ends of the range that is given, the lower one first."""
+    if isinstance(within, str) or not isinstance(within, Sequence) or len(within) != 2:
+        raise ValueError(f"within: must be two speeds, got {python_text(within)}")
+    low, high = sorted(_number("within", one, "m/s", scene) / unit for one in within)
+    if low == high:
+        raise ValueError(f"within: must be two different speeds, got {python_text(within)}")
+    return low, high

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,6 +11,7 @@ import pandas as pd
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.motion.orbit.record import Orbit
+from frictionlab.motion.orbit.recorder import interpolation_weights
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.engine import within
 from frictionlab.runner.part import beside_in_si, si_scales
@@ -17,10 +19,12 @@ from frictionlab.scene.scene import Initial, Scene
 from frictionlab.study.grid import law_in_scene
 from frictionlab.values.quantities import Floats, at_least_one
 
-_STILL, _LOOKS = 1e-12, np.linspace(-1.0, 1.0, 65)
-"""Slip over the largest velocity that is rounding; places in a panel between which slip is taken to turn once."""
+_STILL, _PLACES = 1e-12, np.linspace(-1.0, 1.0, 65)
+"""Slip over the largest velocity, and rest over the time, that are rounding; places in a panel between which slip is
+taken to turn once."""
+_LOOKS = interpolation_weights(_PLACES)
 NO_MOTION = "no motion in time is known of this scene and law by {name}: {why}"
-NOT_DRIVEN = "it needs a mass, and a law that is not solved axis by axis"
+NOT_DRIVEN = "it needs a mass, a law that is not solved axis by axis, and method auto or shooting"
 
 
 class Trajectory(pd.DataFrame):  # type: ignore[misc]
@@ -66,11 +70,12 @@ def trajectory(
         Number of periods.
     samples : int, >= 1, default 200
         Rows per period, evenly spaced; one more row is the end.
-    initial : Initial, optional
+    initial : Initial or dict, optional
         Position and velocity at tau = 0. ``scene.initial`` if left out; if the scene has none either the
-        friction-free motion, or rest on the belt if nothing drives the mass.
+        friction-free motion, or rest on the belt if nothing drives the mass. In SI units a mapping,
+        ``{"x": "1 mm"}``.
     method : str or Method, default "auto"
-        Name of a method, or a method such as ``fl.March(steps=1000)``.
+        "auto" or "shooting".
     tolerance : float, > 0, default 1e-8
         Absolute bound [-] on the error of the mean friction of a period.
 
@@ -85,7 +90,7 @@ def trajectory(
     Raises
     ------
     ValueError
-        If the method does not follow such a motion, or a value makes no sense.
+        If the method does not follow such a motion, no spring holds the body, or a value makes no sense.
     TypeError
         If a value is of another kind.
 
@@ -140,35 +145,34 @@ def _events(scene: Scene, found: list[Orbit]) -> pd.DataFrame:
     """Return where stick along the belt begins and ends, and where slip turns round, in the order of time."""
     from scipy.optimize import brentq
 
-    from frictionlab.motion.orbit.recorder import interpolation_weights
-
-    belt, rows, side, sticking = scene.signals().belt[0], [], 0.0, False
+    belt, rows, side, sticking = scene.signals().belt[0], list[tuple[Any, ...]](), 0.0, False
+    released: tuple[float, ...] | None = None  # where stick ended, until slip has a side
     for orbit in found:
-        assert orbit.stick is not None
-        for tau, x, v, sticks in zip(orbit.tau, orbit.x.real, orbit.v.real, orbit.stick, strict=True):
+        rests = np.zeros(len(orbit.tau), bool) if orbit.stick is None else orbit.stick
+        for tau, x, v, sticks in zip(orbit.tau, orbit.x.real, orbit.v.real, rests, strict=True):
             slip = v - scene.belt_speed - belt(tau)
-            if sticks != sticking:
-                rows.append((tau[0], "stick begins" if sticks else "stick ends", x[0], v[0]))
+            here = float(tau[0]), float(x[0]), float(v[0])
+            if sticks and not sticking:
+                rows.append((here[0], "stick begins", *here[1:]))
+            elif sticking and not sticks and here[0] - rows[-1][0] <= _STILL * here[0]:
+                rows.pop()  # a rest of no length
+            elif sticking and not sticks:
+                rows.append((here[0], "stick ends", *here[1:]))
+                released = here
             sticking = bool(sticks)
-            if sticks:
-                continue
-            fine = interpolation_weights(_LOOKS) @ slip
+            fine = _LOOKS @ slip
             signs = np.where(np.abs(fine) > _STILL * np.abs(v).max(), np.sign(fine), 0.0)
-            for k in np.flatnonzero(signs).tolist():
+            for k in () if sticks else np.flatnonzero(signs).tolist():
                 if side * signs[k] < 0.0:
-                    place = _LOOKS[max(k - 1, 0)]
+                    place = float(_PLACES[max(k - 1, 0)])
                     if k > 0 and fine[k - 1] * fine[k] < 0.0:
-                        place = brentq(
-                            lambda p, w=slip: interpolation_weights(np.array([p]))[0] @ w, place, _LOOKS[k]
-                        )
-                    then = interpolation_weights(np.array([place]))[0] @ np.column_stack([tau, x, v])
+                        place = brentq(_at, place, float(_PLACES[k]), (slip,))
+                    then = released or tuple(_at(place, each) for each in (tau, x, v))
                     rows.append((then[0], "reversal", *then[1:]))
-                side = signs[k]
+                side, released = signs[k], None
     return pd.DataFrame(rows, columns=["tau", "event", "x1", "v1"])
 
 
 def _at(place: float, values: Floats) -> float:
     """Compute the polynomial through the values at the nodes of a panel."""
-    from frictionlab.motion.orbit.recorder import interpolation_weights
-
     return float(interpolation_weights(np.array([place]))[0] @ values)

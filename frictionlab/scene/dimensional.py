@@ -42,7 +42,13 @@ from frictionlab.scene.parts import (
     file_alone,
 )
 from frictionlab.scene.receptance import TabulatedBody, read_receptance
-from frictionlab.scene.rules import frequency_of, problems_of_parts, problems_of_slip, replaced_by_table
+from frictionlab.scene.rules import (
+    frequency_of,
+    problems_of_free,
+    problems_of_parts,
+    problems_of_slip,
+    replaced_by_table,
+)
 from frictionlab.scene.units import (
     DASHPOT,
     SPRING,
@@ -437,6 +443,7 @@ class InSI(PartInSI):
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
         if self.is_free and self.damping_ratio is not None:
             twice.append("damping_ratio: is of a spring, and stiffness is 0: give damping")
+        twice += problems_of_free(self, SPRING[0]) if self.is_free else []
         others = self._of_slip() if self.is_prescribed else [*self._of_table(), *problems_of_parts(self)]
         problems = [*twice, *others]
         if not problems:

@@ -31,6 +31,9 @@ from frictionlab.scene.units import (
 from frictionlab.scene.waveforms import SINE, Ratio, Waveform
 from frictionlab.values.quantities import Finite, NonNegative, Positive, Record
 
+OF_WHAT_VARIES = "phase", "waveform", "frequency_ratio"
+"""Keys that say nothing of a constant force."""
+
 
 class ScenePart(Record):
     """Part of a scene.
@@ -64,6 +67,9 @@ class ScenePart(Record):
         enough = 0 if self.alone and getattr(self, self.key(self.alone)) is not None else 1
         if keys and not enough <= count <= 1:
             raise ValueError(f"give exactly one of {' and '.join(keys)}")
+        stray = [name for name in OF_WHAT_VARIES if keys and count == 0 and getattr(self, name, None)]
+        if stray:
+            raise ValueError(f"{stray[0]}: is of a force that varies: give {' or '.join(keys)}")
         return self
 
 

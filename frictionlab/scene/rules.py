@@ -31,8 +31,8 @@ def replaced_by_table(scene: Any, names: Iterable[str]) -> list[str]:
 
 def problems_of_slip(scene: Any) -> list[str]:
     """Return the problems of a prescribed slip, and of the variation of its normal load."""
-    for name in ("damping_ratio", "drive", "transverse", "body", "initial", "belt_vibration"):
-        if getattr(scene, name) is not None:
+    for name in ("damping_ratio", "spring", "drive", "transverse", "body", "initial", "belt_vibration"):
+        if getattr(scene, name, None) is not None:
             return [f"{name}: leave it out with a prescribed slip"]
     if scene.transverse_slip is not None and scene.slip is not None and scene.slip.direction is not None:
         return ["slip.direction: leave it out with transverse_slip"]
@@ -108,6 +108,14 @@ def _problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
         elif not given and not own:
             yield f"{name}.{frequency}: required where drive is left out"
             given = name
+
+
+def problems_of_free(scene: Any, spring: str) -> list[str]:
+    """Return the problems of a body that no spring holds; ``spring`` is the key that says so."""
+    shaken = _gives_frequency(scene.drive) or any(getattr(scene, name) is not None for name in SHAKEN)
+    nothing = f"{spring}: a body that nothing shakes needs a spring: without one it slides as the belt does"
+    bent = "body: leave it out where no spring holds the body"
+    return [*([] if shaken else [nothing]), *([bent] if scene.body is not None else [])]
 
 
 def frequency_of(scene: Any) -> float:

@@ -44,6 +44,7 @@ from frictionlab.scene.parts import (
 from frictionlab.scene.rules import (
     frequency_of,
     periods_of,
+    problems_of_free,
     problems_of_parts,
     problems_of_slip,
     replaced_by_table,
@@ -260,10 +261,7 @@ class Scene(ScenePart):
         required = ("normal_load",) if measured else ("damping_ratio", "normal_load")
         missing = [f"{name}: required" for name in required if getattr(self, name) is None]
         left = replaced_by_table(self, ["damping_ratio"]) if measured else []
-        if self.is_free and self.body is not None:
-            left.append("body: leave it out where no spring holds the body")
-        if self.is_free and self.undriven:
-            left.append("spring: a body that nothing shakes needs one: without it slides as the belt does")
+        left += problems_of_free(self, "spring") if self.is_free else []
         return [*missing, *left, *problems_of_parts(self)]
 
     def _shown(self) -> dict[str, Any]:
@@ -352,7 +350,7 @@ class Scene(ScenePart):
         >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).si["mean_friction_N"], 4)
         0.0332
         """
-        return cls.model_validate({"dimensional": Dimensional(**values)})
+        return cls(**{"dimensional": Dimensional(**values)})
 
     @property
     def degrees_of_freedom(self) -> int:

@@ -210,7 +210,7 @@ MISTAKES = [
     ("mu: 0.4", "mu: -1", "failures[0].laws[0].mu: must be > 0"),
     ("[METHODS]", "[{kind: exact, tolerance: [1.0e-6, 1.0e-9]}]", "a map takes one setting"),
     ("[METHODS]", "[exactly]", "unknown method 'exactly'"),
-    ("scene.normal_load: 10}", "scene.damping: 10}", "failures[0].points[0].scene.damping: unknown key"),
+    ("scene.normal_load: 10}", "scene.damping: 10}", "failures[0].points[0]: give name, scene.belt"),
     ("    methods: [METHODS]\n", "", "failures[0]: no methods and no peers"),
     ("points: [{name", "dots: [{name", "failures[0].dots: unknown key"),
 ]

@@ -34,6 +34,7 @@ def acceleration(tau: Any) -> Any:
     return np.cos(tau) + np.cos(2 * tau + math.radians(40))
 
 
+SLIP = {"velocity_amplitude": 1, "frequency": 1}
 PERIOD = 2 * math.pi
 GRID = np.linspace(0.0, PERIOD, 4001)
 
@@ -144,6 +145,26 @@ def test_above_all_velocities_of_the_plate_friction_is_that_of_sliding() -> None
     assert state.harmonics(2).friction_amplitude[0] == pytest.approx(-MU, abs=1e-9)
 
 
+@pytest.mark.parametrize("law", [fl.Coulomb(mu=MU), fl.Coulomb(mu=MU, mu_static=0.4)])
+def test_a_plate_too_weak_to_move_a_body_leaves_it_at_rest(law: fl.Coulomb) -> None:
+    still = plate(belt_vibration=SLIP | {"velocity_amplitude": 0.1}, normal_load=2)
+
+    assert [fl.drift_speed(still, law, force=force).speed for force in (0.0, 0.3)] == [0.0, 0.0]
+    held = fl.steady_state(still.with_(initial={"x": 0}), law)
+    assert held.velocity_amplitude == pytest.approx(0.1, rel=1e-9)
+
+
+@pytest.mark.parametrize("waveform", ["triangle", {"points": [[0, 0], [0.2, 1], [0.5, -0.5], [1, 0]]}])
+def test_a_force_with_corners_drives_a_free_body_however_soft_the_springs(waveform: Any) -> None:
+    drive = {"amplitude": 0.47, "frequency": 3.7, "waveform": waveform}
+    scene = plate(0.09, 0.0013, belt_vibration=None, damping_ratio=0.05, drive=drive)
+    law = fl.Coulomb(mu=0.4)
+
+    auto, shot = (fl.steady_state(scene, law, method) for method in ("auto", "shooting"))
+    assert auto.error < 1e-8
+    assert auto.mean_friction == pytest.approx(shot.mean_friction, abs=auto.error + shot.error)
+
+
 def test_a_study_asks_for_the_drift_in_si_units() -> None:
     scene = {
         "mass": "10 g",
@@ -173,12 +194,18 @@ def test_a_study_asks_for_the_drift_in_si_units() -> None:
         (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), within=(0.5, 0.6)), "one sign from 0.5 to 0.6"),
         (lambda: fl.trajectory(plate(), fl.Coulomb(mu=MU)), "no spring holds the body: give it a soft one"),
         (lambda: fl.needs(plate(), fl.Coulomb(mu=MU)), "takes no body without a spring"),
-        (lambda: plate(belt_vibration=None), "spring: a body that nothing shakes needs one"),
+        (lambda: plate(belt_vibration=None), "spring: a body that nothing shakes needs a spring"),
         (lambda: plate(body={"cubic_stiffness": 1}), "body: leave it out where no spring holds the body"),
         (
             lambda: fl.Scene.si(mass="1 kg", stiffness=0, damping_ratio=0.1, belt_speed=0),
             "damping_ratio: is of a spring",
         ),
+        (lambda: fl.Scene.si(mass="1 kg", stiffness=0, belt_speed=0), "stiffness: a body that nothing"),
+        (lambda: fl.Scene(spring=False, normal_load=1, belt_speed=1, slip=SLIP), "spring: leave it out"),
+        (lambda: fl.Drive(offset=0.1, waveform="square"), "waveform: is of a force that varies"),
+        (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), force=math.nan), "must be a number, got nan"),
+        (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), within=(1.0,)), "within: must be two speeds"),  # type: ignore[arg-type]
+        (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), within=(1, 1)), "within: must be two different"),
     ],
 )
 def test_what_a_free_body_cannot_do_is_told(ask: Any, said: str) -> None:

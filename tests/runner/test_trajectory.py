@@ -51,7 +51,7 @@ def test_the_mass_obeys_the_equation_of_motion_across_the_ends_of_periods() -> N
         ({"method": "exact"}, "no motion in time is known of this scene and law by exact"),
         (
             {"law": fl.Dahl(mu=0.4, stiffness=4, planar="per-axis"), "scene": PLANAR},
-            "it needs a mass, and a law",
+            "it needs a mass, a law",
         ),
         ({"periods": 0}, "periods must be a whole number of at least 1, got 0"),
         ({"samples": 2.5}, "samples must be a whole number of at least 1, got 2.5"),
@@ -113,6 +113,17 @@ def test_events_of_a_driven_motion_are_where_its_slip_is_zero() -> None:
         assert len(events) >= 5
         assert events["v1"].to_numpy() == pytest.approx(SCENE.belt_speed, abs=1e-8)
         assert events["tau"].is_monotonic_increasing
+
+
+def test_slip_turns_round_at_the_instant_at_which_rest_ends() -> None:
+    shaken = {"velocity_amplitude": 1, "frequency": 0.4}
+    scene = fl.Scene(damping_ratio=0.05, normal_load=1, belt_speed=0, belt_vibration=shaken)
+    events = fl.trajectory(scene, fl.Coulomb(mu=0.4), periods=3).events
+    ends, turns = (events[events["event"] == each] for each in ("stick ends", "reversal"))
+
+    assert ends["tau"].tolist() == turns["tau"].tolist()
+    assert ends["v1"].to_numpy() == pytest.approx(np.sin(0.4 * ends["tau"]), abs=1e-8)
+    assert len(ends) > 3
 
 
 def test_an_undriven_motion_on_bristles_is_that_of_an_unrelated_integration() -> None:

@@ -242,10 +242,10 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
         sums.position.real / period,
         mean_friction(sums.friction.imag, period),
         sums.position.imag / period,
-        _amplitude(v.real, stick),
+        _amplitude(v.real),
         abs(sums.harmonic_1) * 2.0 / period,
         _lead(sums.harmonic_1, mass.force),
-        _amplitude(v.imag, stick),
+        _amplitude(v.imag),
         abs(sums.harmonic_2) * 2.0 / period,
         _lead(sums.harmonic_2, mass.force),
         sums.stick / period,
@@ -384,13 +384,13 @@ OVERSHOOT = 0.6
 
 
 @inner
-def _amplitude(values: Any, stick: Any) -> float:
+def _amplitude(values: Any) -> float:
     """Return half the difference between the extremes of the panel polynomials."""
-    return 0.5 * (_highest(values, 1.0, stick) + _highest(values, -1.0, stick))
+    return 0.5 * (_highest(values, 1.0) + _highest(values, -1.0))
 
 
 @inner
-def _highest(values: Any, sign: float, stick: Any) -> float:
+def _highest(values: Any, sign: float) -> float:
     """Return the maximum of sign * the panel polynomials, interior maxima included."""
     highest = -1e300
     for panel in range(values.shape[0]):
@@ -408,7 +408,7 @@ def _highest(values: Any, sign: float, stick: Any) -> float:
         # An extreme inside a panel lies where its derivative falls through zero between two nodes.
         differentiate_panel(row, slope)
         for node in range(1, values.shape[1]):
-            if not stick[panel] and slope[node - 1] > 0.0 >= slope[node]:
+            if slope[node - 1] > 0.0 >= slope[node]:
                 at = zero_between(slope, NODES[node - 1], NODES[node])
                 highest = max(highest, interpolate(row, at))
     return highest

@@ -196,7 +196,7 @@ def test_a_folder_may_be_used_for_other_columns(tmp_path: Path) -> None:
     assert [each.computed for each in done] == [2, 0, 2, 2, 2]
     assert done[2].table["reversals"].notna().all()
     assert found(done[3].table) == with_usual("reversals")
-    assert found(done[4].table) == list(RESULTS)
+    assert found(done[4].table) == with_usual(*columns_of("all"))
     with pytest.raises(FolderError, match="another study"):
         fl.run(study(tolerance=1e-6), tmp_path)
 

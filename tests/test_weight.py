@@ -6,11 +6,11 @@ from profiles import deep
 from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
-    "analysis": 2120,
-    "bench": 2862,
+    "analysis": 2121,
+    "bench": 2858,
     "beside the rooms": 87,
     "charts": 1775,
-    "cli": 972,
+    "cli": 975,
     "compile": 1409,
     "curves": 842,
     "laws": 686,
@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 841,
     "tools": 19,
     "values": 1406,
-    "tests": 26093,
+    "tests": 26089,
     "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -283,9 +283,8 @@ class _Reader:
             return read_study(Source(self.source.name, self.source.text, told, keys, values))
         except StudyError as problem:
             head = dotted(path)
-            paths = [f"{head}.{each.path}".removesuffix(".") for each in problem.mistakes]
-            said = [replace(each, path=at) for each, at in zip(problem.mistakes, paths, strict=True)]
-            raise StudyError(said) from None
+            said = [(each, f"{head}.{each.path}".removesuffix(".")) for each in problem.mistakes]
+            raise StudyError([replace(each, path=at) for each, at in said]) from None
 
     # --- who is measured ------------------------------------------------------------------------------------------
 
@@ -328,8 +327,7 @@ class _Reader:
             solver = self._solver({key: each[key] for key in each if key not in asked}, path, head)
             solvers.append((BenchSetting(quantity, float(value), setting.tolerance), solver))
             points = setting.points
-        kind = str(item["kind"])
-        return Contender(str(item.get("label", kind)), kind, tuple(solvers), points)
+        return Contender(str(item.get("label", item["kind"])), str(item["kind"]), tuple(solvers), points)
 
     def _solver(self, told: dict[str, Any], path: KeyPath, head: str) -> Method | Peer:
         """The method, or of the head ``peers`` the peer, of these parameters."""
@@ -349,10 +347,8 @@ class _Reader:
 
     def _references(self, told: Measured, path: KeyPath, files: bool = True) -> tuple[ReferenceSource, ...]:
         """The references of a list or of one of its blocks; files: whether a table of values is of use."""
-        places = [(*path, "references", index) for index in range(len(told.references))]
-        return tuple(
-            self._reference(item, at, files) for item, at in zip(told.references, places, strict=True)
-        )
+        given = enumerate(told.references)
+        return tuple(self._reference(each, (*path, "references", index), files) for index, each in given)
 
     def _reference(self, item: Any, path: KeyPath, files: bool) -> ReferenceSource:
         with self._noted() as notes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 @options.overrides
 @options.law_files
 @options.no_plugins
+@options.workers
 @options.as_json
 def fit_command(
     study: Path,
@@ -37,6 +39,7 @@ def fit_command(
     overrides: tuple[str, ...],
     law_files: tuple[Path, ...],
     plugins: Plugins,
+    workers: int | None,
     as_json: bool,
 ) -> int:
     """Fit the laws of STUDY to the measurements that its data name, by the numbers that its free names.
@@ -47,14 +50,14 @@ def fit_command(
     """
     from frictionlab.analysis.fit.api import fit_measured, measured_of
     from frictionlab.analysis.fit.measured import WrongData
+    from frictionlab.analysis.fit.residuals import STARTS
     from frictionlab.runner.table import records
     from frictionlab.study.load import load_study
 
     asked = load_study(study, overrides, law_files, plugins)
-    if asked.data is None or not asked.free:
-        missing = "data" if asked.data is None else "free"
-        example = "data: {file: measured.csv}" if missing == "data" else "free: {mu: [0.1, 1.0]}"
-        raise CommandError(WRONG, f"{study}: a study to fit has data and free; write {example}")
+    for key, example in (("data", "data: {file: measured.csv}"), ("free", "free: {mu: [0.1, 1.0]}")):
+        if not getattr(asked, key):
+            raise CommandError(WRONG, f"{study}: a study to fit has data and free; write {example}")
     folder = out or Path("fits") / study.stem
     try:
         measured = measured_of(asked)
@@ -62,8 +65,9 @@ def fit_command(
         laws = [choice.law_class(**choice.parameters, label=choice.label) for choice in asked.laws]
         with metered() as meter:
             meter.begins("fitting")
-            scene = None if measured.is_path else asked.scene
-            found = fit_measured(measured, laws, scene, asked.free, tell=meter.begins).complete(meter.begins)
+            ways = (STARTS, meter.begins, workers or os.cpu_count() or 1)
+            found = fit_measured(measured, laws, asked.scene, asked.free or {}, *ways)
+            found = found.complete(meter.begins)
     except (WrongData, ValueError) as problem:
         raise CommandError(WRONG, str(problem)) from None
     _write(found, asked.title or study.stem, folder)

@@ -46,6 +46,9 @@ no_plugins = click.option(
     callback=lambda context, parameter, refused: "refuse" if refused else "run",
     help="Refuse a study that lists plugins: their code would be run.",
 )
+workers = click.option(
+    "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
+)
 as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of records instead of text.")
 
 

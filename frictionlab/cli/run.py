@@ -104,9 +104,7 @@ class RunOptions(NamedTuple):
     metavar="A,B",
     help="The result columns to find, and groups of them, as `frictionlab columns` tells them; all for every one.",
 )
-@click.option(
-    "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
-)
+@options.workers
 @click.option("--processes", type=click.IntRange(min=1), metavar="N", help="Processes instead of threads.")
 @click.option(
     "--scheduler",

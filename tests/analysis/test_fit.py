@@ -50,12 +50,8 @@ def correlated(size: float, rho: float, seed: int) -> Any:
 
 
 def test_a_curve_without_noise_gives_its_own_numbers_back() -> None:
-    found = fl.fit(
-        curve_of(fl.Coulomb(mu=0.4)),
-        fl.Coulomb(mu=0.9),
-        SCENE,
-        {"mu": (0.1, 1), "scene.damping_ratio": (0.02, 1)},
-    )
+    free = {"mu": (0.1, 1), "scene.damping_ratio": (0.02, 1)}
+    found = fl.fit(curve_of(fl.Coulomb(mu=0.4)), fl.Coulomb(mu=0.9), SCENE, free, threads=2)
     assert found.values == pytest.approx({"mu": 0.4, "scene.damping_ratio": 0.1}, rel=1e-6)
     assert found.law == fl.Coulomb(mu=found.values["mu"])
     assert found.scene is not None
@@ -252,7 +248,7 @@ def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_command_writes_tables_a_figure_and_a_page(
     study: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert cli.main(["fit", str(study)]) == 0
+    assert cli.main(["fit", str(study), "-j", "1"]) == 0
     told, folder = capsys.readouterr().out, study.parent / "fits" / "study"
     assert told.startswith("Coulomb fits with an rms of ")
     fitted = pd.read_csv(folder / "fit.csv")

@@ -24,6 +24,7 @@ from frictionlab.runner.arguments import given_law, given_scene
 from frictionlab.scene.scene import Scene
 from frictionlab.study.data import SLIP_ALONE
 from frictionlab.study.study import Study
+from frictionlab.values.quantities import at_least_one
 
 NEEDS_SCENE = (
     "the measurements are mean friction against belt speed: write the scene that they were measured in, "
@@ -37,8 +38,7 @@ def measured_of(study: Study) -> Measurements:
     assert study.data is not None
     folder = Path() if study.path is None else study.path.parent
     tables = [_read(folder / name, dict(study.data.columns)) for name in study.data.files]
-    where = ", ".join(study.data.files)
-    measured = given_measurements(tables, where, study.scene.dimensional is not None)
+    measured = given_measurements(tables, ", ".join(study.data.files), study.scene.dimensional is not None)
     if not measured.is_path and study.scene == Scene(**SLIP_ALONE):
         raise WrongData(f"{study.path or 'study'}: {NEEDS_SCENE}")
     return measured
@@ -82,8 +82,7 @@ def at_measured_points(study: Study) -> Study:
     values = {name: tuple(points[name].tolist()) for name in points}
     ranges = {name: each for name, each in study.ranges.items() if name not in values}
     links = (*study.links, tuple(values)) if len(values) > 1 else study.links
-    sweep = {**study.sweep, **values}
-    return replace(study, sweep=sweep, ranges=ranges, links=links, data=None, free=None)
+    return replace(study, sweep={**study.sweep, **values}, ranges=ranges, links=links, data=None, free=None)
 
 
 def fit(
@@ -94,6 +93,7 @@ def fit(
     blocks: ArrayLike | None = None,
     starts: int = STARTS,
     tell: Callable[[str], None] | None = None,
+    threads: int = 1,
 ) -> FittedLaws:
     """Fit numbers of laws, and of their scene, to measurements by least squares.
 
@@ -118,6 +118,8 @@ def fit(
         Number of starts of the search, drawn over the ranges.
     tell : callable, optional
         Function that is called with the name of what is being fitted.
+    threads : int, >= 1, default 1
+        Derivatives that are computed at the same time. Results do not depend on it.
 
     Returns
     -------
@@ -145,9 +147,8 @@ def fit(
     """
     laws = [given_law(each) for each in (law if isinstance(law, Sequence) else [law])]
     body = None if scene is None else given_scene(scene)
-    in_si = body is not None and body.dimensional is not None
-    measured = given_measurements(data, in_si=in_si, blocks=blocks)
-    return fit_measured(measured, laws, body, free or {}, starts, tell)
+    measured = given_measurements(data, in_si=bool(body and body.dimensional), blocks=blocks)
+    return fit_measured(measured, laws, body, free or {}, starts, tell, threads)
 
 
 def fit_measured(
@@ -157,10 +158,10 @@ def fit_measured(
     free: Mapping[str, Any],
     starts: int = STARTS,
     tell: Callable[[str], None] | None = None,
+    threads: int = 1,
 ) -> FittedLaws:
     """The same of checked measurements. Raises ValueError."""
-    if measured.is_path and scene is not None:
-        scene = None
+    scene = None if measured.is_path else scene
     if not measured.is_path and scene is None:
         raise ValueError(
             "a curve of mean friction needs the scene it was measured in: fit(data, law, scene, ...)"
@@ -184,7 +185,7 @@ def fit_measured(
     fitted: list[FittedLaw] = []
     failed: dict[str, str] = {}
     for model in models:
-        residuals = Residuals(model, measured)
+        residuals = Residuals(model, measured, at_least_one("threads", threads))
         try:
             found = search(residuals, starts, tell)
         except KeyboardInterrupt:

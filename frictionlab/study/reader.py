@@ -130,10 +130,10 @@ def _build(build: Callable[[], Any], owners: Container[str], grid: StudyGrid, no
     """
     try:
         return build()
-    except StudyError as problem:
+    except (StudyError, OverflowError) as problem:
         own = [path for path in grid.sweep if owner_of(path) in owners]
-        path: KeyPath = _place(own[-1], grid) if own else ("laws",)
-        notes.on_key(path, problem.mistakes[0].what)
+        what = str(problem) if isinstance(problem, OverflowError) else problem.mistakes[0].what
+        notes.on_key(_place(own[-1], grid) if own else ("laws",), what)
         return None
 
 

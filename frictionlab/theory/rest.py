@@ -53,7 +53,7 @@ def friction_at_rest(law: Any) -> float:
 def can_hold(scene: Scene, law: FrictionLaw) -> bool:
     """Check whether static friction can keep a mass at rest on the belt at all times.
 
-    The spring of the mass is undeflected on average.
+    The spring of the mass balances the mean of the load.
     """
     if not scene.is_harmonic:
         held = _held_with_the_belt(scene)
@@ -172,7 +172,10 @@ def _times(edges: Floats, quickest: float) -> _Times:
 
 
 def _against_the_belt(load: Signal, belt: Signal, own: tuple[float, float], times: _Times) -> Floats | None:
-    """Return load less inertia, dashpot and spring (own) of a mass at rest on the belt, in one direction."""
+    """Return load less inertia, dashpot and spring (own) of a mass at rest on the belt, in one direction.
+
+    The mean of the load is left out: the spring balances it.
+    """
     (damping, stiffness), (edges, tau, k) = own, times
     path = piecewise(belt, edges)
     places = np.arange(len(edges) - 1)
@@ -185,7 +188,7 @@ def _against_the_belt(load: Signal, belt: Signal, own: tuple[float, float], time
     # subtract the mean over the period, by the trapezoidal rule at these times
     x = x - float(np.trapezoid(x, tau)) / path.period
     velocity, acceleration = path.at(tau, k)
-    pushed = piecewise(load, edges).at(tau, k)[0]
+    pushed = piecewise(load, edges).at(tau, k)[0] - load.mean
     return np.asarray(pushed - acceleration - damping * velocity - stiffness * x)
 
 

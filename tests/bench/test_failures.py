@@ -204,15 +204,11 @@ def test_the_command_writes_a_table_and_a_figure_for_each_method(capsys: pytest.
 SWEPT_TWICE = ", 13]\n      scene.damping_ratio: [0.1, 0.2]\n"
 TWO_LAWS = "[{kind: coulomb, mu: 0.4}, {kind: dahl, mu: 0.4, stiffness: 4}]"
 MISTAKES = [
-    ("  - name: load\n    title", "  - title", "failures[0].name: required key is missing"),
     (", 13]\n", SWEPT_TWICE, "a map sweeps the belt speed and one other number"),
     ("[{kind: coulomb, mu: 0.4}]", TWO_LAWS, "one law, got 2"),
-    ("mu: 0.4", "mu: -1", "failures[0].laws[0].mu: must be > 0"),
     ("[METHODS]", "[{kind: exact, tolerance: [1.0e-6, 1.0e-9]}]", "a map takes one setting"),
-    ("[METHODS]", "[exactly]", "unknown method 'exactly'"),
     ("scene.normal_load: 10}", "scene.damping: 10}", "failures[0].points[0]: give name, scene.belt"),
     ("    methods: [METHODS]\n", "", "failures[0]: no methods and no peers"),
-    ("points: [{name", "dots: [{name", "failures[0].dots: unknown key"),
 ]
 
 
@@ -224,6 +220,5 @@ def test_a_wrong_map_is_told_where_and_what(old: str, new: str, told: str) -> No
     with pytest.raises(StudyError) as caught:
         bench.load_bench(Path("list.yaml"))
 
-    assert any(told in f"{mistake.path}: {mistake.what}" for mistake in caught.value.mistakes), str(
-        caught.value
-    )
+    (mistake,) = caught.value.mistakes
+    assert told in f"{mistake.path}: {mistake.what}"

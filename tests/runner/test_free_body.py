@@ -149,7 +149,9 @@ def test_above_all_velocities_of_the_plate_friction_is_that_of_sliding() -> None
 def test_a_plate_too_weak_to_move_a_body_leaves_it_at_rest(law: fl.Coulomb) -> None:
     still = plate(belt_vibration=SLIP | {"velocity_amplitude": 0.1}, normal_load=2)
 
-    assert [fl.drift_speed(still, law, force=force).speed for force in (0.0, 0.3)] == [0.0, 0.0]
+    pushed = still.with_(drive={"offset": -0.3})
+    assert fl.drift_speed(still, law).speed == fl.drift_speed(still, law, force=0.3).speed == 0.0
+    assert fl.drift_speed(pushed, law).speed == fl.drift_speed(pushed, law, force=0.6).speed == 0.0
     held = fl.steady_state(still.with_(initial={"x": 0}), law)
     assert held.velocity_amplitude == pytest.approx(0.1, rel=1e-9)
 

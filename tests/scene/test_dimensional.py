@@ -217,6 +217,9 @@ def test_bounds_of_a_parameter_are_those_of_the_number_given_and_a_number_withou
     assert scaled_law(Short(reach=0.005), Units(1e-3, 1.0, 1.0)).reach == pytest.approx(5.0)
     with pytest.raises(OverflowError, match=r"reach: 0\.005 in SI units is inf in those of the scene"):
         scaled_law(Short(reach=0.005), Units(1e-320, 1.0, 1.0))
+    laws = [{"kind": "dahl", "mu": MU, "presliding_length": 1.7e308}]
+    with pytest.raises(StudyError, match=r"presliding_length: .* in SI units is inf"):
+        parse_study({"schema": 1, "scene": {"dimensional": BODY | {"length_m": 1e-6}}, "laws": laws})
 
 
 STRIBECK: dict[str, Any] = {"kind": "stribeck", "mu_static": 0.5, "mu_kinetic": 0.3, "viscosity": 0.02}

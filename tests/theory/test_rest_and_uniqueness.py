@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.stribeck import Stribeck
+from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import (
     can_hold,
@@ -45,6 +46,21 @@ def test_a_normal_load_that_sinks_holds_less() -> None:
     lighter = scene(normal_load_variation={**PULSATING, "amplitude": 0.8})
     assert not stays_at_rest(lighter, LAW)
     assert not can_hold(lighter, LAW)
+
+
+@pytest.mark.parametrize("law", [LAW, Coulomb(mu=0.4, mu_static=0.5)])
+def test_the_mean_of_a_load_is_carried_by_the_spring_and_moves_no_range(law: Coulomb) -> None:
+    """A square of amplitude .3, up for .3 of the period, is .42 above and .18 below its mean."""
+    for load, above, below in (
+        ({"offset": 0.8}, 0.3, 0.3),
+        ({"waveform": {"square": {"duty": 0.3}}}, 0.42, 0.18),
+    ):
+        held = scene(drive={"amplitude": 0.3, "frequency": 1.0, **load})
+        state = steady_state(held, law)
+        assert resting_range(held, law) == pytest.approx((1.0 - below) / 2.0, abs=1e-9)
+        assert (state.mean_low, state.mean_high) == pytest.approx(
+            (above / 2 - 0.5, 0.5 - below / 2), abs=1e-9
+        )
 
 
 def test_a_range_of_rest_need_not_be_about_zero() -> None:

@@ -27,6 +27,7 @@ from frictionlab.values.quantities import Floats
 SALTATION = 1e-8
 """Error of multipliers carried through events, absolute or of those above one: rounding, much more than is seen."""
 FARTHEST = np.finfo(np.float64).max
+REACHED = "reached from scene.initial after {} periods; other starts reach other states"
 NO_DAMPING = (
     "without damping and without slip reversal the free oscillation does not decay: the friction is mu at every "
     "instant of every motion, but the motion depends on the start; give scene.initial"
@@ -163,8 +164,9 @@ class _Curve(Ledger):
         rests: whether the belt is at rest. unbounded: whether an undamped load in resonance outdoes friction.
         """
         forcing, speed = self.forcing, float(self.belt_speeds[i])
-        # At rest the force of friction is the load less the position; of the load the mean is zero.
-        low, high = forcing.table[HIGHEST] - forcing.friction, forcing.table[LOWEST] + forcing.friction
+        # At rest the force of friction is the position less the load, whose mean the spring balances.
+        mean = self.scenes[i].signals().load[0].mean
+        low, high = forcing.table[[HIGHEST, LOWEST]] - mean + np.array([-1.0, 1.0]) * forcing.friction
         if rests and low <= high:
             bounds = float(low / forcing.normal_load), float(high / forcing.normal_load)
             self._depends_on_start(i, bounds, _permanent_stick(*bounds))
@@ -200,9 +202,7 @@ class _Curve(Ledger):
         # The adjoint of a map that leaves some direction as it was does not exist: only rounding is left to say.
         row[curve.ERROR] = (periods + 8.0) * 16.0 * row[curve.ROUNDING] / self.mass.normal_load
         self.rows[i] = row
-        self.reason[i] = (
-            f"reached from scene.initial after {periods} periods; other starts reach other states"
-        )
+        self.reason[i] = REACHED.format(periods)
         return True
 
     def _start(self, i: int) -> Floats:

@@ -1,4 +1,4 @@
-"""How much the mean friction changes with each number of a scene and of a law: differences of steady states."""
+"""Derivatives of mean friction by each number of a scene and of a law: differences of steady states."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from frictionlab.study.axes import GridValue
 from frictionlab.study.study import Study
 from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.rest import can_hold, friction_at_rest, is_unique
-from frictionlab.values.quantities import Floats
+from frictionlab.values.quantities import Finite, Floats, Record
 
 OF_FRICTION_TO_LOAD = ("scene.normal_load", "scene.drive.amplitude", "scene.drive.unbalance")
 """Quantities that are drawn as friction over load."""
@@ -32,12 +32,12 @@ _HALVINGS = 30
 """Of the interval between two values of the grid in which an edge lies."""
 
 
-class NamedPoint(NamedTuple):
+class NamedPoint(Record):
     """A point of a map with a name: its belt speed [scene velocity] and the value of the other quantity."""
 
     name: str
-    belt_speed: float
-    value: float
+    belt_speed: Finite
+    value: Finite
 
 
 class GridRow(NamedTuple):

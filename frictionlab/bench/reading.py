@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import csv
 import re
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
-from types import MappingProxyType
 from typing import Annotated, Any, Literal, NoReturn, TypeVar
 
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -59,7 +57,7 @@ def _of_a_file(name: str) -> str:
 class Measured(Record):
     """Who is measured and against whom, of a list or of one of its blocks."""
 
-    references: tuple[Any, ...] = ()
+    references: tuple[dict[str, Any], ...] = ()
     methods: Many = ()
     peers: Many = ()
 
@@ -91,14 +89,14 @@ class ModelsBlock(ListItem):
     """An item of ``models``."""
 
     sweep: Any
-    references: Many
+    references: Annotated[tuple[dict[str, Any], ...], FILLED]
     without: Annotated[tuple[str, ...], FILLED] = ()
     repeats: AtLeastOne = 20
     seconds: Positive = 1.0
 
 
 class ListKeys(Measured):
-    """The keys of a list."""
+    """Keys of a bench list: its title, its sections, and who is measured on all of them."""
 
     schema_version: Literal[1] = Field(alias="schema")
     title: str = ""
@@ -119,7 +117,7 @@ class Asked(Record):
 
 
 class Closely(Record):
-    """How closely a reference is asked for."""
+    """Tolerance that a reference is solved to."""
 
     tolerance: Positive
 
@@ -136,7 +134,7 @@ _RecordT = TypeVar("_RecordT", bound=Record)
 
 
 def load_bench(path: FilePath) -> Bench:
-    """The bench list of this file. Raises StudyError with the mistakes of the first block that has any."""
+    """Read the bench list of a file. Raises StudyError with the mistakes of the first block that has any."""
     source = _source(path)
     title, sections = _Reader(source, path.parent).read(source.tree)
     return Bench(path.stem, title, tuple(sections))
@@ -153,16 +151,18 @@ def _source(path: FilePath) -> Source:
 
 @dataclass(frozen=True)
 class _Reader:
-    """One pass over the values of a list, up to the first mistake."""
+    """Reader of one list, which refuses it at the first block with mistakes."""
 
     source: Source
     folder: FilePath
 
     def read(self, tree: Any) -> tuple[str, list[Section]]:
-        """The title, and every section."""
+        """Return the title of the list and its sections."""
         keys = self._record(ListKeys, tree, ())
         orders, stability = (each.sections() if each else () for each in (keys.orders, keys.stability))
         found = [*self._curves(keys), *orders, *stability, *self._maps(keys), *self._models(keys)]
+        if not found:
+            self._wrong((), "nothing to measure: give scenes, failures, models, orders or stability")
         self._refuse_equal([section.name for section in found], ("scenes",))
         return keys.title, found
 
@@ -181,7 +181,7 @@ class _Reader:
             raise StudyError(self.source.located(notes.all))
 
     def _record(self, kind: type[_RecordT], given: Any, path: KeyPath) -> _RecordT:
-        """The record of these keys."""
+        """Make a record of the keys at a path. Raises StudyError with every mistake in them."""
         with self._noted() as notes:
             made = build_record(kind, given, path, notes)
         assert made is not None
@@ -190,7 +190,7 @@ class _Reader:
     # --- blocks: a study each -------------------------------------------------------------------------------------
 
     def _blocks(self, kind: type[_RecordT], head: str, given: Many) -> Iterator[tuple[KeyPath, _RecordT]]:
-        """The blocks of a key of the list, with their places."""
+        """Yield the blocks that a key of the list holds, each with its path."""
         for index, each in enumerate(given):
             yield (head, index), self._record(kind, each, (head, index))
 
@@ -211,7 +211,7 @@ class _Reader:
         """A section for each method and peer that a list of maps names."""
         found = list[tuple[MapTruth, Sequence[Contender]]]()
         for path, block in self._blocks(MapBlock, "failures", keys.failures):
-            contenders = self._measured(block, path)
+            contenders = self._measured(block, path, {})
             for each in (each for each in contenders if len(each.solvers) > 1):
                 told = f"'{each.label}': a map takes one setting; give each a label of its own"
                 self._wrong((*path, f"{each.side}s"), told)
@@ -237,15 +237,16 @@ class _Reader:
     def _points(self, block: MapBlock, path: KeyPath, paths: tuple[str, str]) -> Iterator[NamedPoint]:
         """``[{name: S2, scene.belt_speed: 0.5, scene.normal_load: 10}]``."""
         for index, item in enumerate(block.points):
-            if item.keys() != {"name", *paths}:
-                told = f"give name, {paths[0]} and {paths[1]}, no other keys"
-                self._wrong((*path, "points", index), told)
-            yield NamedPoint(str(item["name"]), *(float(item[key]) for key in paths))
+            at, keys = (*path, "points", index), ("name", *paths)
+            if item.keys() != {*keys}:
+                self._wrong(at, f"give name, {paths[0]} and {paths[1]}, no other keys")
+            told = dict(zip(NamedPoint.model_fields, map(item.get, keys), strict=True))
+            yield self._record(NamedPoint, told, at)
 
     def _models(self, keys: ListKeys) -> Iterator[Section]:
         """Of each scene: the first law on all of it is the richest model, which the others are held against."""
         for path, block in self._blocks(ModelsBlock, "models", keys.models):
-            contenders = self._measured(block, path)
+            contenders = self._measured(block, path, {})
             references = self._references(block, path, files=False)
             found = list[BenchedModel]()
             for lacking, told in self._scenes(block, path):
@@ -282,17 +283,16 @@ class _Reader:
         try:
             return read_study(Source(self.source.name, self.source.text, told, keys, values))
         except StudyError as problem:
-            head = dotted(path)
-            said = [(each, f"{head}.{each.path}".removesuffix(".")) for each in problem.mistakes]
-            raise StudyError([replace(each, path=at) for each, at in said]) from None
+            paths = {each.path: f"{dotted(path)}.{each.path}".removesuffix(".") for each in problem.mistakes}
+            raise StudyError([replace(each, path=paths[each.path]) for each in problem.mistakes]) from None
 
     # --- who is measured ------------------------------------------------------------------------------------------
 
     def _measured(
-        self, block: ListItem, path: KeyPath, shared: Mapping[str, Contender] = MappingProxyType({})
+        self, block: ListItem, path: KeyPath, shared: dict[str, Contender]
     ) -> tuple[Contender, ...]:
         """The methods and peers of a block, and those of all."""
-        found = {**shared, **self._contenders(block, path)}
+        found = shared | self._contenders(block, path)
         if not found:
             self._wrong(path, "no methods and no peers: there is nothing to measure")
         return tuple(found.values())
@@ -313,27 +313,28 @@ class _Reader:
         """A method or peer; one of its values may be a list, which is run through."""
         with self._noted() as notes:
             notes.mapping(item, path)
-        varied = [key for key in item if isinstance(item[key], list) and key != "points"]
+        varied = [key for key in item if isinstance(item[key], list) and key not in ("kind", "points")]
         if len(varied) > 1:
             self._wrong((*path, varied[1]), f"only one value may be a list, and {varied[0]} is one")
         quantity = varied[0] if varied else ""
         with self._noted() as notes:
             values = items(item[quantity], (*path, quantity), "[1.0e-6]", notes) if varied else [0.0]
-        solvers, points = list[tuple[BenchSetting, Method | Peer]](), None
+        solvers = list[tuple[BenchSetting, Method | Peer]]()
         for value in values:
             each = item | {quantity: value} if varied else item
             asked = {key: each[key] for key in Asked.model_fields if key in each}
             setting = self._record(Asked, asked, path)
             solver = self._solver({key: each[key] for key in each if key not in asked}, path, head)
             solvers.append((BenchSetting(quantity, float(value), setting.tolerance), solver))
-            points = setting.points
-        return Contender(str(item.get("label", item["kind"])), str(item["kind"]), tuple(solvers), points)
+        kind = str(item["kind"])
+        return Contender(str(item.get("label", kind)), kind, tuple(solvers), item.get("points"))
 
     def _solver(self, told: dict[str, Any], path: KeyPath, head: str) -> Method | Peer:
-        """The method, or of the head ``peers`` the peer, of these parameters."""
+        """Make a method of these parameters, or a peer of those under the key ``peers``."""
         if head == "peers":
             with self._noted() as notes:
                 name = notes.one_of(told.get("kind"), (*path, "kind"), PEERS)
+                notes.text(told.get("label", ""), (*path, "label"))
             parameters = {key: value for key, value in told.items() if key not in ("kind", "label")}
             return self._record(PEERS[str(name)], parameters, path)
         if told.get("kind") == "auto":
@@ -350,12 +351,10 @@ class _Reader:
         given = enumerate(told.references)
         return tuple(self._reference(each, (*path, "references", index), files) for index, each in given)
 
-    def _reference(self, item: Any, path: KeyPath, files: bool) -> ReferenceSource:
-        with self._noted() as notes:
-            notes.mapping(item, path)
-        if "values" in item and not files:
-            self._wrong(path[:-1], "give methods: a table of values knows one curve of one model alone")
+    def _reference(self, item: dict[str, Any], path: KeyPath, files: bool) -> ReferenceSource:
         if "values" in item:
+            if not files:
+                self._wrong(path[:-1], "give methods: a table of values knows one curve of one model alone")
             known = self._record(ValuesOfFile, item, path)
             table = self._table(self.folder / known.values, (*path, "values"))
             return ReferenceSource(known.label or known.values, "", None, known.error, table)
@@ -377,15 +376,14 @@ class _Reader:
 
     def _refuse_equal(self, names: Sequence[str], path: KeyPath) -> None:
         """Refuse two of one name, which would be written to one file."""
-        for stem, count in Counter(file_stem(name).casefold() for name in names).items():
-            if count > 1:
-                self._wrong(path, f"{count} would be written to {stem}.csv; give each a name of its own")
+        stems = [file_stem(name).casefold() for name in names]
+        if same := [repr(name) for name, stem in zip(names, stems, strict=True) if stems.count(stem) > 1]:
+            self._wrong(path, f"{' and '.join(same)} would be written to files of one name: rename them")
 
 
 def _told(block: ListItem) -> dict[str, Any]:
     """The study of a block, as it is written."""
-    own = {key: getattr(block, key) for key in OF_A_STUDY if key in block.model_fields_set}
-    return {"schema": 1, **own}
+    return {"schema": 1} | {key: getattr(block, key) for key in OF_A_STUDY if key in block.model_fields_set}
 
 
 def _workloads(

@@ -32,8 +32,8 @@ MOST_STEPS = 40
 FIRST = 0.117
 """First speed that is tried, over that of the vibration; not a share at which waveforms have corners."""
 CLOSE, NEAR = 1e-11, 1e-6
-"""How closely the speed is sought, and the least distance at which the slope of the mean force is taken, both over
-the speed of the vibration."""
+"""Distance to which the speed is sought, and the least one at which the slope of the mean force is taken, over the
+speed of the vibration."""
 SLOPES = 2.0
 """Largest ratio of that slope to the one at the speed itself that the error allows for."""
 COLUMNS = frozenset({"mean_friction", "error", "mean_low", "mean_high", "seconds"})

@@ -27,7 +27,7 @@ NO_MOTION = "no motion in time is known of this scene and law by {name}: {why}"
 NOT_DRIVEN = "it needs a mass, a law that is not solved axis by axis, and method auto or shooting"
 
 
-class Trajectory(pd.DataFrame):  # type: ignore[misc]
+class Trajectory(pd.DataFrame):  # type: ignore[misc]  # pandas tells mypy no types
     """Motion in time, a row for each instant.
 
     Attributes

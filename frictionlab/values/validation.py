@@ -303,7 +303,7 @@ def _meant(error: Any) -> str:
 _BOUNDS = {"greater_than": (">", "gt"), "greater_than_equal": (">=", "ge")}
 _BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
 _WANTED = {"string": "text", "tuple": "a list such as [1, 2]", "int": "a whole number", "float": "a number"}
-_WANTED |= {"bool": "true or false"}
+_WANTED |= {"bool": "true or false", "dict": "a mapping (key: value)"}
 """By what the name of an error begins with."""
 
 

@@ -206,7 +206,7 @@ def test_a_study_asks_for_the_drift_in_si_units() -> None:
         (lambda: fl.Scene(spring=False, normal_load=1, belt_speed=1, slip=SLIP), "spring: leave it out"),
         (lambda: fl.Drive(offset=0.1, waveform="square"), "waveform: is of a force that varies"),
         (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), force=math.nan), "must be a number, got nan"),
-        (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), within=(1.0,)), "within: must be two speeds"),  # type: ignore[arg-type]
+        (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), within=(1.0,)), "within: must be two speeds"),  # type: ignore[arg-type]  # mistyped
         (lambda: fl.drift_speed(plate(), fl.Coulomb(mu=MU), within=(1, 1)), "within: must be two different"),
     ],
 )

@@ -34,10 +34,10 @@ UNANSWERED_AS = 10.0
 
 @dataclass(eq=False)
 class Residuals:
-    """Of a model against measurements; counts how often the model was asked. error: that of its numbers, largest.
+    """Differences of a model from measurements, row by row; it counts how often the model was asked.
 
-    threads: derivatives that are computed at once. unanswered, why: rows without a number when last asked, and why
-    the last one had none.
+    error: the largest of the numbers of the model. threads: derivatives that are computed at once. unanswered, why:
+    rows without a number when last asked, and why the last one had none.
     """
 
     model: Model

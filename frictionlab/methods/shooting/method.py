@@ -110,7 +110,7 @@ class Shooting(Method):
         return solve(scenes, law, tolerance)
 
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
-        """Of a driven mass, by the period map that closes its orbits; of an undriven one, in turns of it."""
+        """Follow a driven mass by the period map that closes its orbits, an undriven one in turns of that."""
         solve = next(solve for applies, solve in CASES if applies(scene, law))
         if solve is solve_undriven:
             return Undriven(scene, law, tolerance).from_the_start(periods)

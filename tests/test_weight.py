@@ -6,7 +6,7 @@ from profiles import deep
 from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
-    "analysis": 2121,
+    "analysis": 2119,
     "bench": 2858,
     "beside the rooms": 87,
     "charts": 1775,
@@ -17,14 +17,14 @@ LIMITS = {
     "methods": 8033,
     "motion": 4596,
     "report": 1816,
-    "runner": 4072,
+    "runner": 4073,
     "scene": 1842,
-    "study": 2809,
+    "study": 2663,
     "testing": 1491,
     "theory": 841,
     "tools": 19,
-    "values": 1406,
-    "tests": 26089,
+    "values": 1421,
+    "tests": 26099,
     "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -142,7 +142,7 @@ def _asked(saved: Results) -> dict[str, Any]:
         "methods": question.methods_grid(study),
         "sweep": question.sweep_grid(study),
         "tolerance": f"{study.tolerance:g}",
-        "keep": study.keep_orbit,
+        "keep": study.keep.orbit,
         "yaml": yaml_text(study.resolved()),
     }
 

@@ -18,9 +18,9 @@ from frictionlab.methods.base import Method
 from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.study import registry
+from frictionlab.study.keys import USUAL_LIMIT
 from frictionlab.study.load import load_study, parse_study
-from frictionlab.study.parts import LIMIT_KEY
-from frictionlab.study.study import SECONDS_PER_POINT, Study
+from frictionlab.study.study import Study
 from frictionlab.values.columns import ALL, GROUPS, RESULTS, SI
 from frictionlab.values.notes import (
     Mistake,
@@ -139,10 +139,10 @@ def _checked_study(study: Study) -> Study:
 def check_limit(study: Study, executor: Executor | Workforce | None) -> None:
     """Raise StudyError if a study limits the time of a point and threads solve it, which nobody can stop."""
     by_threads = executor is None or (isinstance(executor, Workforce) and not executor.elsewhere)
-    if by_threads and study.seconds_per_point != SECONDS_PER_POINT:
+    if by_threads and study.limit != USUAL_LIMIT:
         name = "study" if study.path is None else str(study.path)
         what = "needs processes: give --processes N (in Python an executor of processes), or leave limit out"
-        raise StudyError([Mistake(name, None, f"limit.{LIMIT_KEY}", what)])
+        raise StudyError([Mistake(name, None, "limit.seconds_per_point", what)])
 
 
 def check_ways(existing: Existing, executor: Executor | Workforce | None) -> None:

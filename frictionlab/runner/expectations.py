@@ -11,8 +11,8 @@ import pandas as pd
 
 from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import counted, in_words
-from frictionlab.study.parts import Expectation, WhereValue
-from frictionlab.values.columns import BELT_SPEED, CURVE_MEASURES, INPUTS, belt_speed, given
+from frictionlab.study.expectations import COMPARISONS, Expectation, WhereValue
+from frictionlab.values.columns import BELT_SPEED, INPUTS, belt_speed, given
 from frictionlab.values.printable import with_error
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.
@@ -35,8 +35,7 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -
 
     curves: the table of curves that goes with the table.
     """
-    of_curves = expectation.shape is not None or expectation.column in CURVE_MEASURES
-    whole = curves if of_curves else table
+    whole = curves if expectation.of_curves else table
     if expectation.column is not None and expectation.column not in whole:  # that no row has
         whole = whole.assign(**{expectation.column: np.nan})
     rows = _matching(expectation.where, whole)
@@ -123,7 +122,7 @@ def _claim(expectation: Expectation) -> str:
 
 
 def _comparator(expectation: Expectation) -> tuple[str, float]:
-    for name in ("equals", "below", "above"):
+    for name in COMPARISONS:
         value = getattr(expectation, name)
         if value is not None:
             return name, value

@@ -223,7 +223,7 @@ def run_folder(study: Study, out: Path) -> RunFolder:
     """Return the output folder of a study."""
     file = study.path.name if study.path is not None else None
     told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
-    kept = study.keep_orbit, study.keep_harmonics, study.keep_attractors
+    kept = study.keep.orbit, study.keep.harmonics, study.keep.attractors
     asked = repr((list(study.sweep), kept, sorted(study.selected()), *sorted(study.boundaries.items())))
     marks = {SOLVER: code_digest(study), ASKED: hashlib.sha256(asked.encode()).hexdigest()}
     return RunFolder(out, Identity(*told, marks=marks))

@@ -53,8 +53,10 @@ class Task:
 
 def task_of(study: Study, limited: bool = True) -> Task:
     """Return the settings that the points of a study share. limited: whether its limit of time is kept."""
-    kept = study.keep_orbit or 0, study.keep_harmonics or 0
-    return Task(study.tolerance, *kept, study.selected(), study.seconds_per_point if limited else math.inf)
+    kept = study.keep.orbit or 0, study.keep.harmonics or 0
+    return Task(
+        study.tolerance, *kept, study.selected(), study.limit.seconds_per_point if limited else math.inf
+    )
 
 
 @dataclass(frozen=True)

@@ -101,9 +101,9 @@ class StudyRun:
     def _kept_files(self, folder: RunFolder) -> list[Path]:
         study = self.study
         kept = {
-            folder.orbits_file: study.keep_orbit,
-            folder.harmonics_file: study.keep_harmonics,
-            folder.attractors_file: study.keep_attractors,
+            folder.orbits_file: study.keep.orbit,
+            folder.harmonics_file: study.keep.harmonics,
+            folder.attractors_file: study.keep.attractors,
         }
         return [file for file, asked in kept.items() if asked is not None]
 
@@ -190,7 +190,7 @@ class StudyRun:
 
     def _made(self, solving: Solving, found: Results) -> dict[str, Reader]:
         """Return what makes the tables that are made from all answers, each once, or reads their files."""
-        study, starts = self.study, self.study.keep_attractors
+        study, starts = self.study, self.study.keep.attractors
 
         def onsets() -> pd.DataFrame:
             return onset_table(study, self._columns(found, READ_FOR_ONSETS))
@@ -212,7 +212,7 @@ class StudyRun:
         if solving.rest:  # what is not solved has no onset
             return None
         # the study, too: keys of pieces know neither labels nor the lengths of scenes in SI units
-        asked = self.study.keep_attractors, sorted(self.study.boundaries.items()), self.study.digest()
+        asked = self.study.keep.attractors, sorted(self.study.boundaries.items()), self.study.digest()
         return self.store.derived(solving.key(name, asked), make)
 
     def _columns(self, found: Results, wanted: Collection[str | None]) -> pd.DataFrame:

@@ -1,66 +1,173 @@
-"""Reading of the ``expect`` lines of a study and their check against the columns of its table."""
+"""What a study expects of its table: the lines under ``expect``, and their check against its columns."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any, Literal, Self
 
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidatorFunctionWrapHandler,
+    WithJsonSchema,
+    WrapValidator,
+    model_validator,
+)
+
+from frictionlab.laws.base import Finite, Positive, Record
 from frictionlab.scene.dimensional import in_si
 from frictionlab.scene.scene import Scene
-from frictionlab.study.parts import Expectation, WhereValue
+from frictionlab.study.parts import natural
 from frictionlab.study.written import column_of
 from frictionlab.values import columns
 from frictionlab.values.notes import KeyPath, Notes, did_you_mean, value_text
-from frictionlab.values.units import in_units
+from frictionlab.values.units import in_units, number_before_unit
 from frictionlab.values.validation import checked_value, placed, record_at
 
-EXPECTATION_KEYS = (
-    *("where", "minus", "over", "column", "equals", "below", "above", "within"),
-    *("status", "max_difference", "shape", "measure", "because"),
-)
-_COMPARISONS = ("equals", "below", "above")
-_ENDS = ("from", "to")
+_ENDS = "from", "to"
+
+
+def _or_text(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    """A number, or a text with a unit as it is: which unit it must be depends on the column."""
+    return value if isinstance(value, str) and number_before_unit(value) != value else number(value)
+
+
+def _two(labels: Any) -> Any:
+    if not isinstance(labels, list | tuple) or len(labels) != 2:
+        raise ValueError("must be a list of two method labels")
+    return labels
+
+
+_Text = WrapValidator(_or_text)
+_WITH_UNIT: dict[str, Any] = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]"}
+_Number = WithJsonSchema({"anyOf": [{"type": "number"}, _WITH_UNIT]})
+_COMPARABLE = [
+    name for name in (*columns.RESULTS, *columns.SI, *columns.CURVE_MEASURES) if name not in columns.TEXT
+]
+WhereValue = str | float | list[str | float] | dict[str, float]
+"""What an input must be: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
+COMPARISONS = "equals", "below", "above"
+_GO_WITH = {
+    "status": (),
+    "max_difference": ("below",),
+    "shape": ("measure",),
+    "column": (*COMPARISONS, "within", "minus", "over"),
+}
+"""The four kinds of claim, each with the keys that go with it."""
+
+
+class Expectation(Record):
+    """Claim of a study about its table.
+
+    where: the rows that are meant, by input columns: a value, a list, or from and to; all where left out
+    minus: what is compared is the column less that of the row with these inputs and equal others
+    over: what is compared is the column over that of the row with these inputs and equal others
+    column: column of the table or of curves that is compared
+    equals: the value of the column, but for within
+    below: the column, or the largest difference, is less than this
+    above: the column is more than this
+    within: absolute difference that equals lets pass
+    status: the status of the rows
+    max_difference: labels of two methods whose means are compared
+    shape: verdict on the shape of the curves, without belt speed in where
+    measure: the measure that the verdict is read from; area where left out
+    because: why that is expected, such as a source
+    """
+
+    where: dict[str, Any] = Field(default_factory=dict)
+    minus: dict[str, Any] | None = None
+    over: dict[str, Any] | None = None
+    column: Annotated[str, WithJsonSchema({"enum": _COMPARABLE})] | None = None
+    equals: Annotated[Finite, _Text, _Number] | None = None
+    below: Annotated[Finite, _Text, _Number] | None = None
+    above: Annotated[Finite, _Text, _Number] | None = None
+    within: Annotated[Positive, _Text, _Number] | None = None
+    status: Literal["ok", "refused", "failed", "not_unique"] | None = None
+    max_difference: Annotated[tuple[str, str], BeforeValidator(_two)] | None = None
+    shape: Literal["concave", "convex", "mixed", "undecided"] | None = None
+    measure: Literal["area", "initial"] | None = None
+    because: str = ""
+
+    @property
+    def kind(self) -> str:
+        """Which kind of claim it is: its key."""
+        return next((key for key in _GO_WITH if getattr(self, key) is not None), "column")
+
+    @property
+    def of_curves(self) -> bool:
+        """Whether it speaks of whole curves."""
+        return self.shape is not None or self.column in columns.CURVE_MEASURES
+
+    @model_validator(mode="after")
+    def _one_claim(self) -> Self:
+        kind, said = self.kind, [key for key in COMPARISONS if getattr(self, key) is not None]
+        keys = [key for key, value in self if value is not None and key not in ("where", "because", kind)]
+        wrong = [
+            f"{key}: {'goes with shape' if key == 'measure' else f'does not go with {kind}'}"
+            for key in keys
+            if key not in _GO_WITH[kind]
+        ]
+        if kind == "column" and self.column is None:
+            wrong += ["column: required key is missing (or give status, max_difference or shape)"]
+        elif kind == "column" and len(said) != 1:
+            raise ValueError(
+                f"give exactly one of equals, below and above, got {' and '.join(said) or 'none'}"
+            )
+        needed = {"max_difference": "below"}.get(kind, "within" if self.equals is not None else "")
+        if needed and getattr(self, needed) is None:
+            wrong += [f"{needed}: required key is missing"]
+        if self.minus is not None and self.over is not None:
+            wrong += ["over: give minus or over, not both"]
+        if wrong:
+            raise ValueError("; ".join(wrong))
+        return self
+
+    def resolved(self) -> dict[str, Any]:
+        """The entry of a study file."""
+        told = {name: natural(value) for name, value in self if value is not None and value != ""}
+        return told | ({"max_difference": list(self.max_difference)} if self.max_difference else {})
 
 
 @dataclass(frozen=True)
 class Table:
     """The columns of the table of a study: text inputs with their values, number inputs, results, swept inputs.
 
-    words: the words and waveforms of the scene, with their values. The values of a text column are None where
-    mistakes leave them uncertain; belt_speed: the column of the belt speed, nondimensional or in SI units; units: of
-    the parameters of laws, where the scene is in SI units.
+    words: the words and waveforms of the scene, with their values. belt_speed: the column of the belt speed,
+    nondimensional or in SI units; units: of the parameters of laws, where the scene is in SI units.
     """
 
-    texts: Mapping[str, tuple[str, ...] | None]
+    texts: Mapping[str, tuple[str, ...]]
     numbers: tuple[str, ...]
     results: tuple[str, ...]
-    words: Mapping[str, tuple[str, ...] | None]
+    words: Mapping[str, tuple[str, ...]]
     swept: tuple[str, ...] = ()
     belt_speed: str = columns.BELT_SPEED
     units: Mapping[str, str] = field(default_factory=dict)
 
 
-def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
-    """Every expectation without a mistake; mistakes are noted."""
-    if not isinstance(given, list):
-        notes.add(("expect",), f"must be a list, got {value_text(given)}")
-        return ()
-    read = [_expectation(item, ("expect", index), table, notes) for index, item in enumerate(given)]
-    return tuple(expectation for expectation in read if expectation is not None)
-
-
-def _expectation(given: Any, path: KeyPath, table: Table, notes: Notes) -> Expectation | None:
-    if notes.mapping(given, path) is None:
-        return None
-    for key in given:
-        if key not in EXPECTATION_KEYS:
-            notes.unknown_key((*path, key), EXPECTATION_KEYS)
-    where = _where(given.get("where", {}), (*path, "where"), table, notes, _wanted)
-    said = _claim(given, path, table, notes)
-    if "because" in given:
-        said["because"] = notes.text(given["because"], (*path, "because"))
-    return None if notes.below(path) else Expectation(where=where, **said)
+def of_table(given: Expectation, path: KeyPath, table: Table, notes: Notes) -> Expectation:
+    """The expectation as the table has its names and numbers; what it has not is noted."""
+    said: dict[str, Any] = {"where": _where(given.where, (*path, "where"), table, notes, _wanted)}
+    beside = {key: value for key in ("minus", "over") if (value := getattr(given, key)) is not None}
+    said |= {key: _where(value, (*path, key), table, notes, _input) for key, value in beside.items()}
+    if given.column is not None:
+        _column(given.column, (*path, "column"), table, notes)
+    if given.of_curves:
+        _of_curves(given, path, table, notes)
+    if given.shape is not None:
+        said["measure"] = given.measure or "area"
+        notes.one_of(given.shape, (*path, "shape"), columns.SHAPES[said["measure"]])
+    for at, label in enumerate(given.max_difference or ()):
+        notes.one_of(label, (*path, "max_difference", at), table.texts["method"])
+    if given.max_difference and len({*given.max_difference}) < 2:
+        notes.add((*path, "max_difference", 1), "is the same method: give two different ones")
+    for key in (*COMPARISONS, "within"):
+        if isinstance(value := getattr(given, key), str):
+            found = in_si(given.column, given.column, value) if given.column in columns.SI else value
+            read = notes.positive if key == "within" else notes.number
+            said[key] = read(found, (*path, key))
+    return given.model_copy(update=said)
 
 
 def _where(
@@ -95,7 +202,7 @@ def _wanted(given: Any, path: KeyPath, key: str, table: Table, notes: Notes) -> 
 def _input(value: Any, path: KeyPath, key: str, table: Table, notes: Notes) -> str | float | None:
     """One value of an input column."""
     if key in table.texts:
-        return _known_text(value, path, table.texts[key], notes)
+        return notes.one_of(value, path, table.texts[key])
     if key in table.words:
         return _word_of_scene(value, path, key, table.words[key], notes)
     return _number(_written(key, column_of(key), value, table), path, column_of(key), notes)
@@ -114,16 +221,16 @@ def _written(key: str, column: str, value: Any, table: Table) -> Any:
 
 
 def _word_of_scene(
-    value: Any, path: KeyPath, column: str, known: tuple[str, ...] | None, notes: Notes
+    value: Any, path: KeyPath, column: str, known: tuple[str, ...], notes: Notes
 ) -> str | None:
     """A word of the scene, or a waveform as the scene gives it or as the table does: as it stands in the table."""
-    if isinstance(value, str) and value in (known or ()):
+    if isinstance(value, str) and value in known:
         return value
     held, what, hint = _as_in_scene(column, value)
     if what is not None:
         notes.add(*placed(path, what, value), hint)
         return None
-    if known is not None and str(held) not in known:
+    if str(held) not in known:
         notes.add(path, f"the table has {', '.join(known)} alone, got {held}")
     return str(held)
 
@@ -145,85 +252,19 @@ def _as_in_scene(column: str, value: Any) -> tuple[Any, str | None, str]:
     return checked_value(record, key, value)
 
 
-def _known_text(value: Any, path: KeyPath, known: tuple[str, ...] | None, notes: Notes) -> str | None:
-    return notes.text(value, path) if known is None else notes.one_of(value, path, known)
-
-
-def _claim(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
-    """The claim about the rows: a number, a status, a difference of two methods, or the shape of a curve."""
-    if "status" in given:
-        _only(given, ("status",), path, notes)
-        statuses = tuple(status for status in columns.STATUSES if status != "killed")
-        return {"status": notes.one_of(given["status"], (*path, "status"), statuses)}
-    if "max_difference" in given:
-        return _difference(given, path, table, notes)
-    return _shape(given, path, table, notes) if "shape" in given else _comparison(given, path, table, notes)
-
-
-def _difference(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
-    _only(given, ("max_difference", "below"), path, notes)
-    pair, at = given["max_difference"], (*path, "max_difference")
-    below = _positive(given, "below", path, notes)
-    if not (isinstance(pair, list) and len(pair) == 2):
-        notes.add(at, f"must be a list of two method labels, got {value_text(pair)}")
-        return {}
-    labels = [_known_text(label, (*at, i), table.texts["method"], notes) for i, label in enumerate(pair)]
-    if labels[0] is not None and labels[0] == labels[1]:
-        notes.add((*at, 1), "is the same method: give two different ones")
-    return {"max_difference": tuple(labels), "below": below}
-
-
-def _shape(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
-    """A verdict on whole curves."""
-    _only(given, ("shape", "measure"), path, notes)
-    _of_curves(given, "shape", path, table, notes)
-    measure = notes.one_of(given.get("measure", "area"), (*path, "measure"), tuple(columns.SHAPES))
-    shapes = columns.SHAPES.get(str(measure), columns.SHAPES["area"])
-    return {"shape": notes.one_of(given["shape"], (*path, "shape"), shapes), "measure": measure}
-
-
-def _of_curves(given: dict[str, Any], key: str, path: KeyPath, table: Table, notes: Notes) -> None:
+def _of_curves(given: Expectation, path: KeyPath, table: Table, notes: Notes) -> None:
     """Note what does not go with whole curves: belt speeds that select rows, or none swept."""
-    where = given.get("where")
-    for name in where if isinstance(where, dict) else ():
+    for name in given.where:
         if name in columns.BELT_SPEEDS:
             notes.on_key((*path, "where", name), "a shape belongs to a whole curve: leave the belt speed out")
     if not any(name in columns.BELT_SPEEDS for name in table.swept):
-        notes.on_key((*path, key), f"a shape needs a curve: sweep {table.belt_speed}")
+        notes.on_key((*path, given.kind), f"a shape needs a curve: sweep {table.belt_speed}")
 
 
-def _comparison(given: dict[str, Any], path: KeyPath, table: Table, notes: Notes) -> dict[str, Any]:
-    if "measure" in given:
-        notes.on_key((*path, "measure"), "goes with shape")
-    column = None
-    if "column" not in given:
-        notes.add((*path, "column"), "required key is missing (or give status, max_difference or shape)")
-    else:
-        column = _column(given["column"], (*path, "column"), table, notes)
-    if column in columns.CURVE_MEASURES:
-        _of_curves(given, "column", path, table, notes)
-    chosen = [key for key in _COMPARISONS if key in given]
-    if len(chosen) != 1:
-        notes.add(path, f"give exactly one of equals, below and above, got {' and '.join(chosen) or 'none'}")
-    if column in columns.SI:
-        given = given | {
-            key: in_si(column, column, given[key]) for key in (*chosen, "within") if key in given
-        }
-    said: dict[str, Any] = {key: notes.number(given[key], (*path, key)) for key in chosen}
-    if "within" in given or "equals" in given:
-        said["within"] = _positive(given, "within", path, notes)
-    beside = [key for key in ("minus", "over") if key in given]
-    if len(beside) > 1:
-        notes.on_key((*path, "over"), "give minus or over, not both")
-    said |= {key: _where(given[key], (*path, key), table, notes, _input) for key in beside}
-    return {"column": column, **said}
-
-
-def _column(given: Any, path: KeyPath, table: Table, notes: Notes) -> str | None:
+def _column(given: str, path: KeyPath, table: Table, notes: Notes) -> None:
     name = result_column(given, path, (*table.results, *columns.CURVE_MEASURES), notes)
     if name in columns.TEXT:
         notes.add(path, f"'{name}' holds text; only numbers can be compared")
-    return name
 
 
 def result_column(
@@ -237,17 +278,3 @@ def result_column(
         notes.add(path, f"must be a {what}, got {value_text(given)}{needed}", "" if in_si else hint)
         return None
     return given
-
-
-def _positive(given: dict[str, Any], key: str, path: KeyPath, notes: Notes) -> float | None:
-    if key not in given:
-        notes.add((*path, key), "required key is missing")
-        return None
-    return notes.positive(given[key], (*path, key))
-
-
-def _only(given: dict[str, Any], own: tuple[str, ...], path: KeyPath, notes: Notes) -> None:
-    """Note the keys that belong to another kind of expectation."""
-    for key in given:
-        if key in EXPECTATION_KEYS and key not in (*own, "where", "because"):
-            notes.on_key((*path, key), f"does not go with {own[0]}")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field, StrictBool
+from pydantic import Field, StrictBool, model_validator
 
 from frictionlab.laws.base import Record
 from frictionlab.study.axes import SCENE, Axis, GridValue, axes_of
@@ -16,9 +16,8 @@ from frictionlab.study.grid import StudyGrid, of_law
 from frictionlab.study.parts import LawChoice
 from frictionlab.study.sweeps import Sweeps
 from frictionlab.values.columns import CURVE_MEASURES
-from frictionlab.values.notes import Mistake, Notes, WrongValues, dotted
+from frictionlab.values.notes import Mistake, Notes, WrongValues
 from frictionlab.values.quantities import gone
-from frictionlab.values.validation import build_record
 
 WIDTHS = {"single": 85.0, "double": 175.0}
 """Of a journal's column and page [mm]."""
@@ -73,6 +72,16 @@ class FigureOptions(Record):
     all: StrictBool = False
     finding: FigureName | None = None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _every(cls, given: Any) -> Any:
+        return {"all": True} if given == EVERY else given
+
+    @classmethod
+    def called(cls) -> str:
+        """Return what one would type in Python to give them."""
+        return "figures"
+
     def resolved(self) -> dict[str, Any]:
         """The entry of a study file: what differs from the defaults."""
         return self.model_dump(mode="json", exclude_defaults=True)
@@ -81,22 +90,18 @@ class FigureOptions(Record):
 USUAL_FIGURES = FigureOptions()
 
 
-def read_figure_options(given: Any, laws: tuple[str, ...] | None, notes: Notes) -> FigureOptions:
-    """How figures are drawn; mistakes are noted. laws: the labels of the study, None where they are uncertain."""
-    read = build_record(FigureOptions, {"all": True} if given == EVERY else given, ("figures",), notes)
-    if isinstance(given, Mapping) and isinstance(given.get("against"), str) and laws is not None:
-        notes.one_of(given["against"], ("figures", "against"), laws)
-    return read or USUAL_FIGURES
+def check_against(given: FigureOptions, laws: tuple[str, ...], notes: Notes) -> None:
+    """Note a law that is to be subtracted and is none of the study's. laws: their labels."""
+    if given.against is not None:
+        notes.one_of(given.against, ("figures", "against"), laws)
 
 
 def figure_options(given: Mapping[str, Any], laws: tuple[str, ...]) -> FigureOptions:
     """Those of keywords in Python, checked as a study's are. laws: the labels of the study. Raises WrongValues."""
-    notes = Notes()
-    read = read_figure_options(dict(given), laws, notes)
+    read, notes = FigureOptions(**given), Notes()
+    check_against(read, laws, notes)
     if notes.all:
-        raise WrongValues(
-            [Mistake("figures", None, dotted(note.path[1:]), note.what, note.hint) for note in notes.all]
-        )
+        raise WrongValues([Mistake("figures", None, "against", notes.all[0].what, notes.all[0].hint)])
     return read
 
 
@@ -104,19 +109,13 @@ BOUNDARIES_KEY = "boundaries"
 _NEEDED = "needs the belt speed and two numbers swept"
 
 
-def read_boundaries(given: Any, sweeps: Sweeps, notes: Notes) -> dict[str, tuple[float, ...]]:
-    """Levels by measure of a curve; mistakes are noted."""
-    read = notes.mapping(given, (BOUNDARIES_KEY,), CURVE_MEASURES) or {}
-    found = {}
-    for measure in (name for name in read if name in CURVE_MEASURES):
-        levels = read[measure] if isinstance(read[measure], list) else [read[measure]]
-        numbers = [notes.number(level, (BOUNDARIES_KEY, measure)) for level in levels]
-        found[measure] = tuple(level for level in numbers if level is not None)
+def check_boundaries(given: Mapping[str, Any], sweeps: Sweeps, notes: Notes) -> None:
+    """Note measures that no curve has, and sweeps over which there are no lines."""
+    notes.mapping(given, (BOUNDARIES_KEY,), CURVE_MEASURES)
     axes = axes_of(sweeps.sweep, sweeps.links)
     speeds = [axis for axis in axes if axis.is_of_speed]
-    if read and (len(speeds) != 1 or len(axes) != 3 or not all(map(_is_number, axes))):
+    if given and (len(speeds) != 1 or len(axes) != 3 or not all(map(_is_number, axes))):
         notes.add((BOUNDARIES_KEY,), f"{_NEEDED}; swept here: {', '.join(sweeps.sweep) or 'nothing'}")
-    return found
 
 
 def swept_numbers(study: StudyGrid) -> tuple[Axis, Axis]:
@@ -129,11 +128,6 @@ def columns_swept(axis: Axis, law: LawChoice) -> dict[str, tuple[GridValue, ...]
     """The columns of the table that have numbers of an axis in the rows of a law, and these numbers."""
     own = [(SCENE, axis.of(SCENE)), ("law.", of_law(axis, law))]
     return {f"{owner}{name}": values for owner, found in own for name, values in found.items()}
-
-
-def levels_told(boundaries: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
-    """The entry of a study file."""
-    return {name: levels[0] if len(levels) == 1 else list(levels) for name, levels in boundaries.items()}
 
 
 def _is_number(axis: Axis) -> bool:

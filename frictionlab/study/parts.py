@@ -1,7 +1,4 @@
-"""The laws, methods and expectations of a study, each as the study gives it.
-
-The laws and methods of a study, each under a unique label.
-"""
+"""The laws and methods of a study, each under a unique label."""
 
 from __future__ import annotations
 
@@ -20,7 +17,6 @@ from frictionlab.values.quantities import Written
 from frictionlab.values.validation import build_record
 
 SCHEMA = 1
-LIMIT_KEY = "seconds_per_point"
 
 
 @dataclass(frozen=True)
@@ -111,44 +107,6 @@ class MethodChoice:
             return self.name
         label = {} if self.label == self.name else {"label": self.label}
         return {"kind": self.name, **natural(self.parameters), **label}
-
-
-WhereValue = str | float | list[str | float] | dict[str, float]
-"""What an input must be: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
-
-
-@dataclass(frozen=True)
-class Expectation:
-    """A claim of a study about its table; exactly one of the six comparisons is set.
-
-    where: input column -> value, selects the rows. equals (needs within), below, above: of ``column``, a result or
-    a measure of curves; of it less, or over, that of the row with the inputs ``minus`` or ``over`` and equal others.
-    status: of those rows. max_difference: two method labels whose mean_friction differs by under ``below``.
-    shape: of the curves those rows make, by ``measure``.
-    """
-
-    where: dict[str, WhereValue]
-    minus: dict[str, WhereValue] | None = None
-    over: dict[str, WhereValue] | None = None
-    column: str | None = None
-    equals: float | None = None
-    below: float | None = None
-    above: float | None = None
-    within: float | None = None
-    status: str | None = None
-    max_difference: tuple[str, str] | None = None
-    shape: str | None = None
-    measure: str | None = None
-    because: str = ""
-
-    def resolved(self) -> dict[str, Any]:
-        """The entry of a study file."""
-        said = {
-            name: natural(value) for name, value in vars(self).items() if value is not None and value != ""
-        }
-        if self.max_difference:
-            said["max_difference"] = list(self.max_difference)
-        return said
 
 
 def natural(value: Any) -> Any:

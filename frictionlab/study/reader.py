@@ -25,14 +25,13 @@ from frictionlab.study.axes import (
     SpeedRange,
     owner_of,
 )
-from frictionlab.study.data import SLIP_ALONE, read_data
-from frictionlab.study.expectations import Table, expectations, result_column
-from frictionlab.study.figure_options import BOUNDARIES_KEY, read_boundaries, read_figure_options
+from frictionlab.study.expectations import Table, of_table, result_column
+from frictionlab.study.figure_options import check_against, check_boundaries
 from frictionlab.study.grid import StudyGrid, grid_size
+from frictionlab.study.keys import SLIP_ALONE, STUDY_KEYS, Keep, StudyKeys
 from frictionlab.study.law_files import LawReader, StudyLaws, read_laws
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.parts import (
-    LIMIT_KEY,
     SCHEMA,
     LawChoice,
     MethodChoice,
@@ -48,9 +47,9 @@ from frictionlab.study.sweeps import Sweeps, read_sweeps
 from frictionlab.study.written import column_of, read_law_numbers, scene_is_in_si, units_of_law
 from frictionlab.study.yaml_source import Source
 from frictionlab.values import columns
-from frictionlab.values.notes import KeyPath, Notes, StudyError, number_text
+from frictionlab.values.notes import KeyPath, Notes, StudyError, did_you_mean, number_text
 from frictionlab.values.quantities import dimensions
-from frictionlab.values.validation import build_record, number_paths, value_paths
+from frictionlab.values.validation import build_record, number_paths
 
 LARGEST_GRID = 100_000_000
 LARGEST_CHECK = 20_000
@@ -63,19 +62,16 @@ LARGEST_KEPT = {
 """What is kept of each point: how much in all, and the sentence where it is more."""
 
 
-def note_impossible_points(grid: StudyGrid, told: Mapping[str, Any], notes: Notes) -> None:
-    """Build the whole grid and note points that cannot be built, or a grid that is too large.
-
-    told: what else the study says.
-    """
+def note_impossible_points(grid: StudyGrid, keys: StudyKeys, notes: Notes) -> None:
+    """Build the whole grid and note points that cannot be built, or a grid that is too large."""
     if (size := grid_size(grid)) > LARGEST_GRID:
         notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
     elif grid.chosen_range is not None:
         _build(lambda: grid.scenes_along, (SCENE,), grid, notes)
         if not notes.all:
-            _note_choice(grid, grid.chosen_range, told["tolerance"], notes)
+            _note_choice(grid, grid.chosen_range, keys.tolerance, notes)
     if not notes.all:
-        _note_too_much_kept(grid_size(grid.foreseen()), told, notes)
+        _note_too_much_kept(grid_size(grid.foreseen()), keys.keep, notes)
     if not notes.all:
         _build_all(_thinned(grid), notes)
 
@@ -91,9 +87,9 @@ def _note_choice(grid: StudyGrid, along: SpeedRange, tolerance: float, notes: No
         notes.add(path, f"the grid has about {about} points; {what}")
 
 
-def _note_too_much_kept(size: int, told: Mapping[str, Any], notes: Notes) -> None:
+def _note_too_much_kept(size: int, keep: Keep, notes: Notes) -> None:
     for key, (most, said) in LARGEST_KEPT.items():
-        if (count := told.get(f"keep_{key}") or 0) * size > most:
+        if (count := getattr(keep, key) or 0) * size > most:
             notes.add(("keep", key), said.format(count=count, size=size, most=most))
 
 
@@ -143,14 +139,7 @@ def _place(swept: str, grid: StudyGrid) -> KeyPath:
     return ("sweep", swept) if entry is None else ("sweep", LINKED, entry, swept)
 
 
-STUDY_KEYS = (
-    *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
-    *("sweep", "expect", "keep", "columns", "limit", "figures", "boundaries", "data", "free"),
-)
-KEPT = {"orbit": 2, "attractors": 1, "harmonics": 1}
-"""What ``keep`` may ask for, and the least count of each."""
 REQUIRED = ("schema", "scene", "laws")
-DEFAULT_TOLERANCE = 1e-8
 DEFAULT_METHODS = ("auto",)
 HERE = FilePath()
 
@@ -208,8 +197,6 @@ class _StudyReader:
         self._source, self._notes, self._bring, self._data_folder = source, notes, bring, data_folder
         self._tree: dict[str, Any] = source.tree
         self._known = registry.Laws()
-        self._labels: dict[str, tuple[str, ...] | None] = {}
-        """Of laws and methods; None where a mistake leaves them open, and what refers to them is not checked."""
 
     def values(self) -> dict[str, Any] | None:
         if self._notes.mapping(self._tree, ()) is None:
@@ -222,27 +209,19 @@ class _StudyReader:
         read_law_numbers(self._tree, self._known)
         sweep = self._sweep()
         laws, methods = self._laws(), self._methods()
-        scene = (
-            build_record(Scene, self._tree["scene"], ("scene",), self._notes)
-            if "scene" in self._tree
-            else None
-        )
-        self._labels = {
-            head: None if self._notes.below((head,)) else tuple(each.label for each in choices)
-            for head, choices in (("laws", laws), ("methods", methods))
-        }
-        told = self._plain_values()
-        told["expect"] = expectations(self._tree.get("expect", []), self._table(scene, sweep), self._notes)
-        told["columns"] = self._columns(scene)
-        if BOUNDARIES_KEY in self._tree:
-            told[BOUNDARIES_KEY] = read_boundaries(self._tree[BOUNDARIES_KEY], sweep, self._notes)
-        if self._notes.all or scene is None:
+        given = {name: value for name, value in self._tree.items() if name in StudyKeys.model_fields}
+        keys = build_record(StudyKeys, given, (), self._notes)
+        scene = self._tree.get("scene")
+        scene = None if scene is None else build_record(Scene, scene, ("scene",), self._notes)
+        if self._notes.all or scene is None or keys is None:
             return None
+        told = dict(keys) | self._referring(keys, scene, sweep, laws, methods)
         told["code"] = brought.code(choice.kind for choice in laws)
         told["plugins"] = brought.files
-        swept = {"sweep": sweep.sweep, "ranges": sweep.ranges, "links": sweep.links}
-        along: dict[str, Any] = {"scene": scene, "laws": laws, "methods": methods, **swept}
-        note_impossible_points(StudyGrid(**along), told, self._notes)
+        along: dict[str, Any] = {"scene": scene, "laws": laws, "methods": methods, "sweep": sweep.sweep}
+        along |= {"ranges": sweep.ranges, "links": sweep.links}
+        if not self._notes.all:
+            note_impossible_points(StudyGrid(**along), keys, self._notes)
         return along | told
 
     def _keys(self) -> None:
@@ -297,66 +276,76 @@ class _StudyReader:
         read = [method_choice(item, ("methods", index), self._notes) for index, item in enumerate(given)]
         return tuple(choice for choice in read if choice is not None)
 
-    def _plain_values(self) -> dict[str, Any]:
-        tree, notes = self._tree, self._notes
-        words = [key for key in ("title", "source") if key in tree]
-        told: dict[str, Any] = {key: notes.text(tree[key], (key,)) for key in words}
-        told["tolerance"] = notes.positive(tree.get("tolerance", DEFAULT_TOLERANCE), ("tolerance",))
-        keep = notes.mapping(tree.get("keep", {}), ("keep",), tuple(KEPT)) or {}
-        for name in keep.keys() & KEPT.keys():
-            told[f"keep_{name}"] = notes.whole_number(keep[name], ("keep", name), KEPT[name])
-        limit = notes.mapping(tree.get("limit", {}), ("limit",), (LIMIT_KEY,)) or {}
-        if LIMIT_KEY in limit:
-            told[LIMIT_KEY] = notes.positive(limit[LIMIT_KEY], ("limit", LIMIT_KEY))
-        told |= read_data(tree, notes, self._data_folder)
-        if "figures" in tree:
-            told["figures"] = read_figure_options(tree["figures"], self._labels["laws"], notes)
-        return told
+    def _referring(
+        self,
+        keys: StudyKeys,
+        scene: Scene,
+        sweep: Sweeps,
+        laws: tuple[LawChoice, ...],
+        methods: tuple[MethodChoice, ...],
+    ) -> dict[str, Any]:
+        """The values of keys that refer to other parts; what these do not have is noted."""
+        notes, table = self._notes, self._table(scene, sweep, laws, methods)
+        check_against(keys.figures, table.texts["law"], notes)
+        check_boundaries(keys.boundaries, sweep, notes)
+        files = keys.data.file if keys.data is not None else ()
+        for index, name in enumerate(files):
+            self._check_file(name, ("data", "file", *([index] if len(files) > 1 else [])))
+        expect = [of_table(each, ("expect", k), table, notes) for k, each in enumerate(keys.expect)]
+        return {"expect": tuple(expect), "columns": self._columns(keys.columns, table)}
 
-    def _columns(self, scene: Scene | None) -> tuple[str, ...] | None:
-        if "columns" not in self._tree:
-            return None
-        if self._tree["columns"] == columns.ALL:
-            return (columns.ALL,)
-        given = items(self._tree["columns"], ("columns",), "[floquet, energies], or all", self._notes)
-        known = (*self._table(scene, Sweeps()).results, *columns.GROUPS)
-        what = "result column or a group of them"
-        read = [result_column(name, ("columns", i), known, self._notes, what) for i, name in enumerate(given)]
-        return tuple(dict.fromkeys(name for name in read if name is not None))
+    def _check_file(self, name: str, path: KeyPath) -> None:
+        """Note a file of measurements that is not there."""
+        folder = self._data_folder
+        if folder is not None and not (folder / name).is_file():
+            there = [each.name for each in folder.glob("*") if each.is_file()] if folder.is_dir() else []
+            self._notes.add(path, f"there is no file {folder / name}", did_you_mean(name, there))
 
-    def _table(self, scene: Scene | None, sweep: Sweeps) -> Table:
-        """The columns that ``where`` may name; all possible ones where the scene or a law has mistakes."""
-        values = dict.fromkeys(value_paths(Scene)) if scene is None else scene.values()
-        laws, methods = self._labels["laws"], self._labels["methods"]
-        kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
-        known = self._known.usable() if kinds is None else kinds
-        classes = [self._known.named(kind) for kind in known]
+    def _columns(self, given: tuple[str, ...] | None, table: Table) -> tuple[str, ...] | None:
+        known, what = (*table.results, *columns.GROUPS), "result column or a group of them"
+        for index, name in enumerate(given or ()):
+            result_column(name, ("columns", index), known, self._notes, what)
+        return None if given is None else tuple(dict.fromkeys(given))
+
+    def _table(
+        self, scene: Scene, sweep: Sweeps, laws: tuple[LawChoice, ...], methods: tuple[MethodChoice, ...]
+    ) -> Table:
+        """The columns that ``where`` may name."""
+        values = scene.values()
+        kinds = tuple(dict.fromkeys(law.kind for law in laws))
+        classes = [self._known.named(kind) for kind in kinds]
         parameters = {f"law.{name}": None for law in classes for name in number_paths(law)}
         inputs = [*(f"scene.{path}" for path in values), *parameters]
-        if columns.belt_speed(inputs) != columns.BELT_SPEED:
+        in_si_units = scene_is_in_si(self._tree)
+        if in_si_units:
             inputs += dict.fromkeys(f"{columns.SCALED}{name}" for law in classes for name in dimensions(law))
-        texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
         words = _words(values, sweep.sweep)
-        numbers = tuple(name for name in inputs if name not in words)
-        swept = swept_paths(self._tree)
-        if not scene_is_in_si(self._tree):
-            return Table(texts, numbers, tuple(columns.results(inputs)), words, swept)
         units = {f"law.{name}": unit for law in classes for name, unit in units_of_law(law).items()}
-        speed = columns.belt_speed(inputs)
-        return Table(texts, numbers, tuple(columns.results(inputs)), words, swept, speed, units)
+        return Table(
+            {
+                "law": tuple(each.label for each in laws),
+                "kind": kinds,
+                "method": tuple(each.label for each in methods),
+            },
+            tuple(name for name in inputs if name not in words),
+            tuple(columns.results(inputs)),
+            words,
+            swept_paths(self._tree),
+            columns.belt_speed(inputs),
+            units if in_si_units else {},
+        )
 
 
 def _words(
     values: Mapping[str, Any], sweep: Mapping[str, tuple[GridValue, ...]]
-) -> dict[str, tuple[str, ...] | None]:
-    """The columns of a scene's words and waveforms, and what each can hold: None where that is uncertain."""
+) -> dict[str, tuple[str, ...]]:
+    """The columns of a scene's words and waveforms, and what each can hold."""
     numbers = number_paths(Scene)
-    found: dict[str, tuple[str, ...] | None] = {}
+    found: dict[str, tuple[str, ...]] = {}
     for path, value in values.items():
         if path not in numbers:
             # a scene in SI units has its words in both scales
             names = (f"scene.{path}", f"scene.dimensional.{path}")
-            swept = next((sweep[name] for name in names if name in sweep), None)
-            told = tuple(map(str, swept)) if swept else (str(value),)
-            found[f"scene.{path}"] = None if value is None else told
+            swept = next((sweep[name] for name in names if name in sweep), (value,))
+            found[f"scene.{path}"] = tuple(map(str, swept))
     return found

@@ -83,7 +83,7 @@ def _parameters(record: type[Record]) -> list[dict[str, Any]]:
 
 def _owner(record: type[BaseModel], name: str) -> type[BaseModel]:
     """The class that defines a parameter and documents it."""
-    return next(kind for kind in record.__mro__ if name in inspect.get_annotations(kind))
+    return next((kind for kind in record.__mro__ if name in inspect.get_annotations(kind)), record)
 
 
 def _unit(field: Any) -> str:
@@ -137,7 +137,7 @@ def meaning(record: type[BaseModel], name: str) -> str:
     for text in (description(record), owner):
         if found := re.search(rf"^{wanted} : .*((?:\n+ +\S.*)+)", text, re.MULTILINE):
             return " ".join(found[1].split()).removesuffix(".")
-    fields = "|".join(map(re.escape, record.model_fields))
+    fields = "|".join(re.escape(field.alias or each) for each, field in record.model_fields.items())
     found = re.search(
         rf"^{wanted}\b([ :,].*(?:\n(?!\s*$|Sources?:|\w+ \[|(?:{fields})\b ?[:,>(]).*)*)",
         owner,

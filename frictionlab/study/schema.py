@@ -13,62 +13,28 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader, registry
 from frictionlab.study.axes import ENDS, FRICTION, LINKED, SpeedRange, SweepRange
-from frictionlab.study.data import SPACINGS
-from frictionlab.study.figure_options import EVERY, FigureOptions
-from frictionlab.study.parts import LIMIT_KEY, SCHEMA
+from frictionlab.study.figure_options import EVERY
+from frictionlab.study.keys import STUDY_KEYS, StudyKeys
+from frictionlab.study.parts import SCHEMA
 from frictionlab.study.records import description, meaning
-from frictionlab.study.study import SECONDS_PER_POINT
 from frictionlab.values import columns
 from frictionlab.values.units import quantity_in
-from frictionlab.values.validation import nested, number_paths
+from frictionlab.values.validation import number_paths, record_at
 
 _KEYS = {
     "schema": "version of the rules that the study is written by",
-    "title": "heading of figures and report",
-    "source": "where the scene comes from, such as a paper and its figure",
     "plugins": "Python files with laws of your own, by their paths from the study; their code is run",
     "laws": "the friction laws, one set of rows each; frictionlab laws lists them",
     "methods": "how steady states are found, one set of rows each; frictionlab methods lists them",
-    "tolerance": "largest absolute error of mean_friction that auto lets pass",
     "sweep": "values to vary, by dotted path: scene.<value>, laws.<label>.<parameter> or friction; "
     "all combinations are solved",
-    "expect": "what the table is expected to say; where it does not, run ends with exit code 3",
-    "columns": "result columns and groups of them to find, told by `frictionlab columns`; all for every one",
-    "limit": "what a point may cost",
-    "figures": "how figures are drawn",
-    "boundaries": "measures of curves and levels: their lines over the two swept numbers, in boundaries.csv",
-    "keep": "what to write beside the table",
-    "data": "measurements: `frictionlab fit` fits to them, run and check solve at their belt speeds",
-    "file": "a file, or a list of files, .csv, .tsv or .parquet, from the study's folder; text may be .gz",
-    "free": "ranges of the numbers that `frictionlab fit` may change: of laws by name, of the scene by path",
-    LIMIT_KEY: "seconds that a point may take, compiling left out, until it counts as killed",
-    "orbit": "samples per period of every orbit, written to orbits.parquet",
-    "attractors": "starts followed at every belt speed; all states they end in are written to attractors.csv",
-    "harmonics": "harmonics of velocity and friction of every orbit, written to harmonics.csv",
     "kind": "registered name",
     "label": "name of its rows; kind where left out",
     FRICTION: "friction coefficients: mu or mu_kinetic of every law, mu_static keeping its ratio",
     LINKED: "lists that advance together, by dotted path; entries and other sweeps make the grid",
-    "where": "the rows that are meant, by input columns: a value, a list, or from and to; all where left out",
-    "minus": "what is compared is the column less that of the row with these inputs and equal others",
-    "over": "what is compared is the column over that of the row with these inputs and equal others",
-    "from": "the least number that is meant",
-    "to": "the largest number that is meant",
-    "because": "why that is expected, such as a source",
-    "column": "column of the table or of curves that is compared",
-    "within": "absolute difference that equals lets pass",
-    "equals": "the value of the column, but for within",
-    "below": "the column, or the largest difference, is less than this",
-    "above": "the column is more than this",
-    "status": "the status of the rows",
-    "max_difference": "labels of two methods whose means are compared",
-    "shape": "verdict on the shape of the curves, without belt speed in where",
-    "measure": "the measure that the verdict is read from; area where left out",
 }
-"""What the keys of a study mean, apart from those of scenes, laws and methods, whose docstrings tell them."""
-OURS_AND_THEIRS = "how the files call our columns, such as {belt_speed: v, mean_friction: mu_bar}"
+"""What the keys of a study mean, apart from those of records, whose docstrings tell them."""
 _NUMBER = {"type": "number"}
-_LEVELS: dict[str, Any] = {"anyOf": [_NUMBER, {"type": "array", "items": _NUMBER, "minItems": 1}]}
 _WORD_OR_NUMBER: dict[str, Any] = {
     "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
 }
@@ -76,7 +42,6 @@ _WORD_OR_NUMBER: dict[str, Any] = {
 _TEXT = {"type": "string"}
 _WITH_UNIT = _TEXT | {"pattern": r"^\s*[-+]?[0-9.]"}
 """A number and its unit, in a scene in SI units."""
-_POSITIVE: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0}
 _SPEEDS = (
     "belt speeds: a list, a range, or start, stop and within, between which they are chosen as the run goes"
 )
@@ -87,10 +52,13 @@ _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", 
 def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a study; rules on several keys at once are left to ``check``."""
     definitions: dict[str, Any] = {}
-    properties = {
+    keys = _record(StudyKeys, definitions)["properties"]
+    figures, pair = keys["figures"], {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2}
+    keys["figures"] = {"description": figures.pop("description"), "oneOf": [{"const": EVERY}, figures]}
+    keys["free"]["additionalProperties"] = {"oneOf": [pair, keys["free"]["additionalProperties"]]}
+    keys["boundaries"]["propertyNames"] = {"enum": list(columns.CURVE_MEASURES)}
+    parts = {
         "schema": {"const": SCHEMA},
-        "title": _TEXT,
-        "source": _TEXT,
         "scene": _record(Scene, definitions),
         "plugins": {"type": "array", "items": _TEXT, "uniqueItems": True},
         "laws": {"type": "array", "minItems": 1, "items": {"oneOf": _laws(laws, definitions)}},
@@ -100,52 +68,14 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
             "items": {"oneOf": _methods(definitions)},
             "default": list(reader.DEFAULT_METHODS),
         },
-        "tolerance": _POSITIVE | {"default": reader.DEFAULT_TOLERANCE},
         "sweep": _sweep(),
-        "expect": {"type": "array", "items": {"oneOf": _expectations()}},
-        "columns": {
-            "oneOf": [
-                {"const": columns.ALL},
-                {
-                    "type": "array",
-                    "minItems": 1,
-                    "items": {"enum": [*columns.RESULTS, *columns.SI, *columns.GROUPS]},
-                },
-            ]
-        },
-        "limit": _closed_object({LIMIT_KEY: _POSITIVE | {"default": SECONDS_PER_POINT}}, []),
-        "figures": {
-            "oneOf": [{"const": EVERY}, _record(FigureOptions, definitions)],
-            "description": _KEYS["figures"],
-        },
-        "boundaries": _closed_object(
-            {name: _LEVELS | {"description": columns.CURVES[name]} for name in columns.CURVE_MEASURES}, []
-        ),
-        "data": _closed_object(
-            {
-                "file": {"oneOf": [_TEXT, {"type": "array", "items": _TEXT, "minItems": 1}]},
-                "columns": {"type": "object", "additionalProperties": _TEXT, "description": OURS_AND_THEIRS},
-            },
-            ["file"],
-        ),
-        "free": {"type": "object", "additionalProperties": _free_range()},
-        "keep": _closed_object(
-            {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
-        ),
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A frictionlab study",
-        **_closed_object(properties, list(reader.REQUIRED)),
+        **_closed_object({key: (parts | keys)[key] for key in STUDY_KEYS}, list(reader.REQUIRED)),
         "$defs": definitions,
     }
-
-
-def _free_range() -> dict[str, Any]:
-    pair = {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2}
-    told = "how the search is spread over the range; log where left out and the ends are a hundredfold apart"
-    ends = {"from": _NUMBER, "to": _NUMBER, "spacing": {"enum": list(SPACINGS), "description": told}}
-    return {"oneOf": [pair, _closed_object(ends, ["from", "to"])]}
 
 
 def schema_text(laws: registry.Laws = registry.INSTALLED_LAWS) -> str:
@@ -177,7 +107,7 @@ def _describe(record: type[BaseModel], made: dict[str, Any], inside: dict[str, A
     for key, field in made.get("properties", {}).items():
         if key in getattr(record, "other_names", {}):
             continue
-        part = nested(record, key)
+        part = record_at(record, (key,)) or record_at(record, (key, 0))
         if told := meaning(record, key) or (part and _first_paragraph(part)):
             field.setdefault("description", told)
         if part is not None:
@@ -219,7 +149,7 @@ def _study_schema(schema: Any) -> Any:
     kept = {
         _BOUNDS.get(key, key) if isinstance(item, (int, float)) else key: _study_schema(item)
         for key, item in schema.items()
-        if key != "required" and not (key == "default" and item is None)
+        if key != "required" and not (key == "default" and (item is None or isinstance(item, dict)))
     }
     choices = [item for item in kept.pop("anyOf", []) if item != {"type": "null"}]
     return kept | (choices[0] if len(choices) == 1 else {"anyOf": choices} if choices else {})
@@ -273,39 +203,3 @@ def _sweep() -> dict[str, Any]:
         "propertyNames": {"pattern": r"^(scene\..+|laws\..+\..+|friction|linked)$"},
         "additionalProperties": values,
     }
-
-
-def _expectations() -> list[dict[str, Any]]:
-    """A column against a number, a status, the difference of two methods, or the shape of a curve."""
-    number = {"anyOf": [_NUMBER, _WITH_UNIT]}
-    within = _closed_object({"from": number, "to": number}, []) | {"minProperties": 1}
-    wanted = {"anyOf": [*_WORD_OR_NUMBER["anyOf"], {"type": "array", "items": _WORD_OR_NUMBER}, within]}
-    shared: dict[str, Any] = {
-        "where": {"type": "object", "additionalProperties": wanted},
-        "because": _TEXT,
-    }
-    known = (*columns.RESULTS, *columns.SI, *columns.CURVE_MEASURES)
-    other = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
-    column = {
-        "column": {"enum": [name for name in known if name not in columns.TEXT]},
-        "minus": other,
-        "over": other,
-        "within": {"anyOf": [_POSITIVE, _WITH_UNIT]},
-    }
-    statuses = [status for status in columns.STATUSES if status != "killed"]
-    pair = {"type": "array", "minItems": 2, "maxItems": 2, "uniqueItems": True, "items": _TEXT}
-    return [
-        _closed_object({**shared, **column, "equals": number}, ["column", "equals", "within"]),
-        _closed_object({**shared, **column, "below": number}, ["column", "below"]),
-        _closed_object({**shared, **column, "above": number}, ["column", "above"]),
-        _closed_object({**shared, "status": {"enum": statuses}}, ["status"]),
-        _closed_object({**shared, "max_difference": pair, "below": _POSITIVE}, ["max_difference", "below"]),
-        *(_shape(shared, measure) for measure in columns.SHAPES),
-    ]
-
-
-def _shape(shared: dict[str, Any], measure: str) -> dict[str, Any]:
-    """A verdict on curves by one measure; ``measure`` is optional for area."""
-    required = ["shape"] if measure == "area" else ["shape", "measure"]
-    own = {"shape": {"enum": list(columns.SHAPES[measure])}, "measure": {"const": measure}}
-    return _closed_object({**shared, **own}, required)

@@ -14,18 +14,28 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
 
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, Record
 from frictionlab.methods.base import Method
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import Form
 from frictionlab.study import registry
 from frictionlab.study.axes import FRICTION, LINKED, SpeedRange
-from frictionlab.study.data import DataFiles
-from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions, levels_told
+from frictionlab.study.expectations import Expectation
+from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 from frictionlab.study.grid import StudyGrid
+from frictionlab.study.keys import (
+    NOT_KEPT,
+    STUDY_KEYS,
+    USUAL_LIMIT,
+    DataFiles,
+    FreeRange,
+    Keep,
+    Limit,
+    StudyKeys,
+)
 from frictionlab.study.law_files import StudyLaws
-from frictionlab.study.parts import LIMIT_KEY, SCHEMA, Expectation, LawChoice, natural, plain_values
-from frictionlab.study.reader import DEFAULT_TOLERANCE, read_values
+from frictionlab.study.parts import SCHEMA, LawChoice, natural, plain_values
+from frictionlab.study.reader import read_values
 from frictionlab.study.registry import LawFile
 from frictionlab.study.written import yaml_text
 from frictionlab.study.yaml_source import read_mapping
@@ -121,8 +131,6 @@ def _plain(value: Any) -> Any:
 
 LAW_COPIES = "laws"
 """The folder in which a run keeps the files of laws it used."""
-SECONDS_PER_POINT = 300.0
-"""The time [s] that a point may take where a study does not say."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -154,20 +162,16 @@ class Study(StudyGrid):
         Absolute bound [-] on the error of ``mean_friction``.
     expect : tuple of Expectation
         Expectations that a run judges.
-    keep_orbit : int, optional
-        Samples per period of each orbit to keep; None to keep none.
-    keep_attractors : int, optional
-        Number of initial states at each point from which every steady state is looked for; None for none.
-    keep_harmonics : int, optional
-        Highest harmonic of velocity and friction to keep; None to keep none.
+    keep : Keep
+        Counts of what is written beside the table: ``orbit``, ``attractors``, ``harmonics``; None for none.
     data : DataFiles, optional
         Files of measurements.
-    free : dict of str to Any, optional
+    free : dict of str to FreeRange, optional
         Ranges by name of the numbers that ``frictionlab fit`` may change.
     columns : tuple of str, optional
         Result columns and groups of them; None for the default ones.
-    seconds_per_point : float, default 300
-        Longest time that a point may take [s].
+    limit : Limit
+        Longest time that a point may take, ``seconds_per_point`` [s].
     figures : FigureOptions
         Options of the figures.
     boundaries : dict of str to tuple of float
@@ -194,13 +198,11 @@ class Study(StudyGrid):
 
     tolerance: float
     expect: tuple[Expectation, ...] = ()
-    keep_orbit: int | None = None
-    keep_attractors: int | None = None
-    keep_harmonics: int | None = None
+    keep: Keep = NOT_KEPT
     data: DataFiles | None = None
-    free: Mapping[str, Any] | None = None
+    free: Mapping[str, FreeRange] | None = None
     columns: tuple[str, ...] | None = None
-    seconds_per_point: float = SECONDS_PER_POINT
+    limit: Limit = USUAL_LIMIT
     figures: FigureOptions = USUAL_FIGURES
     boundaries: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     title: str = ""
@@ -265,7 +267,7 @@ class Study(StudyGrid):
         )
         parts = [repr(self.scene), laws, *([] if methods == "'auto'" else [f"methods={methods}"])]
         told = self.resolved()
-        usual = {*_OBJECTS, *(["tolerance"] if told["tolerance"] == DEFAULT_TOLERANCE else [])}
+        usual = {*_OBJECTS, *(["tolerance"] if told["tolerance"] == StudyKeys().tolerance else [])}
         parts += [f"{key}={_typed(value)}" for key, value in told.items() if key not in usual]
         return f"Study.of({', '.join(parts)})"
 
@@ -294,38 +296,20 @@ class Study(StudyGrid):
 
     def resolved(self) -> dict[str, Any]:
         """The study as plain values; with its ``law_texts`` beside it they load to an equal study."""
-        words = {"title": self.title, "source": self.source}
-        told: dict[str, Any] = {"schema": SCHEMA, **{key: text for key, text in words.items() if text}}
-        told["scene"] = natural(self.scene.given())
-        if self.plugins:
-            told["plugins"] = list(self.law_texts())
-        told["laws"] = [law.resolved() for law in self.laws]
-        told["methods"] = [method.resolved() for method in self.methods]
-        told["tolerance"] = self.tolerance
-        if self.sweep:
-            told["sweep"] = self._told_sweep()
-        keep = {
-            "orbit": self.keep_orbit,
-            "attractors": self.keep_attractors,
-            "harmonics": self.keep_harmonics,
+        keys = {
+            name: _as_written(getattr(self, name))
+            for name, key in StudyKeys.model_fields.items()
+            if name == "tolerance" or getattr(self, name) != key.get_default(call_default_factory=True)
         }
-        if kept := {name: count for name, count in keep.items() if count is not None}:
-            told["keep"] = kept
-        if self.columns is not None:
-            told["columns"] = list(self.columns)
-        if self.seconds_per_point != SECONDS_PER_POINT:
-            told["limit"] = {LIMIT_KEY: self.seconds_per_point}
-        if figures := self.figures.resolved():
-            told["figures"] = figures
-        if self.boundaries:
-            told["boundaries"] = natural(levels_told(self.boundaries))
-        if self.data is not None:
-            told["data"] = self.data.resolved()
-        if self.free:
-            told["free"] = natural(dict(self.free))
-        if self.expect:
-            told["expect"] = [expectation.resolved() for expectation in self.expect]
-        return told
+        parts = {
+            "scene": natural(self.scene.given()),
+            "plugins": list(self.law_texts()),
+            "laws": [law.resolved() for law in self.laws],
+            "methods": [method.resolved() for method in self.methods],
+            "sweep": self._told_sweep(),
+        }
+        told = {"schema": SCHEMA, **keys, **{key: part for key, part in parts.items() if part}}
+        return {key: told[key] for key in STUDY_KEYS if key in told}
 
     def _told_sweep(self) -> dict[str, Any]:
         told: dict[str, Any] = {}
@@ -390,6 +374,21 @@ class Study(StudyGrid):
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
         swept = self.swept_parameters(law)
         return {name: v for name, v in law.parameters.items() if name not in swept}
+
+
+def _as_written(value: Any) -> Any:
+    """The value of a key as a study file writes it."""
+    if isinstance(value, Record):
+        return natural(
+            value.resolved() if hasattr(value, "resolved") else value.model_dump(exclude_defaults=True)
+        )
+    if isinstance(value, Mapping):
+        alone = {
+            key: each[0] if isinstance(each, tuple) and len(each) == 1 else each
+            for key, each in value.items()
+        }
+        return {key: _as_written(each) for key, each in alone.items()}
+    return [_as_written(each) for each in value] if isinstance(value, tuple) else natural(value)
 
 
 _OBJECTS = {"schema", "scene", "plugins", "laws", "methods"}

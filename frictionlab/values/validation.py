@@ -32,10 +32,21 @@ _RecordT = TypeVar("_RecordT", bound=BaseModel)
 
 def nested(record: type[BaseModel], key: str) -> type[BaseModel] | None:
     """The record a field holds, or None for a field that holds a plain value."""
-    for kind in _alternatives(record.model_fields[key].annotation):
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
-            return kind
-    return None
+    return _record(record.model_fields[key].annotation)
+
+
+def _record(kind: Any) -> type[BaseModel] | None:
+    """The record among the alternatives of a type."""
+    kinds = (each for each in _alternatives(kind) if isinstance(each, type) and issubclass(each, BaseModel))
+    return next(kinds, None)
+
+
+def _inside(kind: Any, step: str | int) -> Any:
+    """The type of a field of a record, or of an item of a list or a mapping; None if there is none."""
+    if (record := _record(kind)) is not None:
+        return record.model_fields[step].annotation if step in record.model_fields else None
+    several = (get_args(each) for each in _alternatives(kind) if get_origin(each) in (tuple, dict))
+    return next((each[0] if each[-1] is ... else each[-1] for each in several), None)
 
 
 def field_name(record: type[BaseModel], key: str) -> str:
@@ -114,10 +125,10 @@ def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
 
 def record_at(record: type[BaseModel], path: KeyPath) -> type[BaseModel] | None:
     """The record at the end of a path through nested records; None if there is none."""
-    found: type[BaseModel] | None = record
-    for key in path:
-        found = nested(found, str(key)) if found and key in found.model_fields else None
-    return found
+    kind: Any = record
+    for step in path:
+        kind = _inside(kind, step)
+    return _record(kind)
 
 
 def build_record(record: type[_RecordT], tree: Any, path: KeyPath, notes: Notes) -> _RecordT | None:
@@ -135,16 +146,23 @@ def build_record(record: type[_RecordT], tree: Any, path: KeyPath, notes: Notes)
     return None if nulls else made
 
 
-def _nulls(record: type[BaseModel], tree: Mapping[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+def _nulls(kind: Any, given: Any) -> Iterator[tuple[KeyPath, str]]:
     """The keys that a study leaves without a value, and what each should have."""
-    for key in (key for key in tree if field_name(record, key) in record.model_fields):
-        field = field_name(record, key)
-        part = nested(record, field)
-        if tree[key] is None:
-            number = float in _alternatives(record.model_fields[field].annotation)
-            yield (key,), "a mapping" if part else "a number" if number else "a value"
-        elif part is not None and isinstance(tree[key], Mapping):
-            yield from (((key, *below), wanted) for below, wanted in _nulls(part, tree[key]))
+    items = (
+        enumerate(given) if isinstance(given, list) else given.items() if isinstance(given, Mapping) else ()
+    )
+    for key, value in items:
+        record = _record(kind)
+        wanted = _inside(kind, key if record is None else field_name(record, str(key)))
+        if value is None and wanted is not None:
+            held = [get_origin(each) or each for each in _alternatives(wanted)]
+            told = (word for each, word in _NULLS.items() if each in held)
+            yield (key,), "a mapping" if _record(wanted) else next(told, "a value")
+        elif wanted is not None:
+            yield from (((key, *below), told) for below, told in _nulls(wanted, value))
+
+
+_NULLS = {float: "a number", str: "text", tuple: "a list", dict: "a mapping"}
 
 
 def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongValues:
@@ -225,16 +243,19 @@ class _Told:
 
     def _at(self, loc: KeyPath) -> KeyPath:
         """Where the value of a field was given: under a key of its own name, or one that the record has for it."""
-        owner: type[BaseModel] | None = self._record
+        kind: Any = self._record
         given: Any = self._given
         found = list(self._path)
         for step in loc:
-            held = given if isinstance(given, Mapping) else {}
+            if isinstance(step, int) and not isinstance(given, list | tuple):  # one value without brackets
+                kind = _inside(kind, step)
+                continue
+            held = given if isinstance(given, Mapping) else dict(enumerate(given or ()))
+            owner = _record(kind)
             others = (key for key in held if owner is not None and field_name(owner, str(key)) == step)
             key = step if step in held else next(others, step)
             found.append(key)
-            given = held.get(key)
-            owner = nested(owner, str(step)) if owner is not None and step in owner.model_fields else None
+            given, kind = held.get(key), _inside(kind, step)
         return tuple(found)
 
     def _is_rule(self, error: Any) -> bool:
@@ -242,16 +263,17 @@ class _Told:
 
     def _misspelt(self, loc: KeyPath) -> KeyPath:
         """Note an unknown key; where the one that was meant belongs."""
-        owner, given = self._record, self._given
+        owner = record_at(self._record, loc[:-1]) or self._record
+        given: Any = self._given
         for step in loc[:-1]:
-            owner, given = nested(owner, str(step)) or owner, given[str(step)]
+            given = given[step]
         key, fields = str(loc[-1]), owner.model_fields
         if why := getattr(owner, "gone_keys", {}).get(key):
             self._notes.on_key((*self._path, *loc), why)
             return loc
         required = [name for name, field in fields.items() if field.is_required()]
         shorter = {field: key for key, field in getattr(owner, "other_names", {}).items()}
-        names = [shorter.get(name, name) for name in fields]
+        names = [shorter.get(name, field.alias or name) for name, field in fields.items()]
         self._notes.unknown_key((*self._path, *loc), names, given, required, shorter)
         left = [name for name in fields if name not in given]
         return (*loc[:-1], closest(key, left, [name for name in required if name in left]) or key)
@@ -328,5 +350,6 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     if message.startswith("must be "):
         value = error["input"].given if isinstance(error["input"], Unfit) else error["input"]
         with_unit = message == "must be a number" and _WITH_UNIT.fullmatch(str(value))
-        return f"{message}, got {given}{_UNITS if with_unit else ''}"
+        quoted = message == "must be text" and not isinstance(value, dict | list | None)
+        return f"{message}, got {given}{_UNITS if with_unit else ' (put it in quotes)' if quoted else ''}"
     return message[:1].lower() + message[1:]

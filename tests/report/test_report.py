@@ -686,6 +686,6 @@ def test_what_is_commented_out_in_a_new_study_is_right_too(tmp_path: Path) -> No
     fewer = ["sweep.scene.belt_speed=[5]", "sweep.laws.coulomb.mu=[0.4]", "expect=[]"]
     study = fl.run(file, overrides=fewer).study
     assert study.source
-    assert study.keep_orbit == 200
+    assert study.keep.orbit == 200
     assert study.scene.degrees_of_freedom == 2
     assert [law.label for law in study.laws] == ["coulomb", "slippery"]

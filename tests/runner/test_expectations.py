@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from frictionlab.runner.expectations import Verdict, judge
-from frictionlab.study.parts import Expectation
+from frictionlab.study.expectations import Expectation
 
 SPEED, LENGTH, MEAN = "scene.belt_speed", "law.presliding_length", "mean_friction"
 TABLE = pd.DataFrame(

@@ -120,7 +120,7 @@ def test_a_study_says_its_limit_only_where_it_is_not_the_usual_one():
     plain = {key: value for key, value in STUDY.items() if key != "limit"} | {"methods": ["auto"]}
     usual, short = parse_study(plain), parse_study(plain | {"limit": {"seconds_per_point": 2}})
 
-    assert (usual.seconds_per_point, short.seconds_per_point) == (300.0, 2.0)
+    assert (usual.limit.seconds_per_point, short.limit.seconds_per_point) == (300.0, 2.0)
     assert "limit" not in usual.resolved()
     assert parse_study(short.resolved()) == short
     assert short.digest() == usual.digest()

@@ -36,7 +36,7 @@ def test_objects_and_the_file_they_write_are_the_same_study(tmp_path: Path) -> N
 
     assert load_study(file) == study
     assert len(study.cases()) == (2 + 1) * 2 * 3
-    assert study.keep_orbit == 4
+    assert study.keep.orbit == 4
 
 
 def test_waveforms_are_swept_as_in_a_file() -> None:

@@ -13,8 +13,8 @@ from study_mistakes import EDITS, GOOD, HINTS
 
 from frictionlab.scene.dimensional import without_unit
 from frictionlab.study import registry
+from frictionlab.study.expectations import Expectation
 from frictionlab.study.load import load_study, parse_study
-from frictionlab.study.parts import Expectation
 from frictionlab.study.schema import schema
 from frictionlab.study.study import Study
 from frictionlab.values.columns import OF_SHAPE
@@ -87,7 +87,7 @@ def test_a_study_becomes_its_frozen_record(written: Any) -> None:
         ("second", "shooting"),
     ]
     assert study.tolerance == 1e-6
-    assert study.keep_orbit == 200
+    assert study.keep.orbit == 200
     assert list(study.sweep) == ["scene.belt_speed", "laws.soft.mu"]
     assert study.expect == (
         Expectation(
@@ -141,13 +141,19 @@ def test_a_range_of_rows_and_their_difference_may_have_units() -> None:
     assert found.below == 0.003
 
 
-def test_a_shape_asks_for_the_belt_speed_of_its_scene_also_beside_other_mistakes() -> None:
-    wrong = {"scene": good()["scene"] | {"normal_load": -1}, "expect": [{"shape": "mixed"}]}
+def test_what_refers_to_other_parts_is_told_once_these_have_no_mistakes() -> None:
+    wrong = {"expect": [{"shape": "mixed"}], "figures": {"against": "dahl"}}
+    for other, told in (
+        ({"scene": good()["scene"] | {"normal_load": -1}}, ["must be > 0, got -1"]),
+        (
+            {},
+            ["must be one of coulomb; got the text 'dahl'", "a shape needs a curve: sweep scene.belt_speed"],
+        ),
+    ):
+        with pytest.raises(StudyError) as caught:
+            parse_study(good() | wrong | other)
 
-    with pytest.raises(StudyError) as caught:
-        parse_study(good() | wrong)
-
-    assert caught.value.mistakes[-1].what == "a shape needs a curve: sweep scene.belt_speed"
+        assert [mistake.what for mistake in caught.value.mistakes] == told
 
 
 def test_what_is_left_out_takes_its_default() -> None:
@@ -156,7 +162,7 @@ def test_what_is_left_out_takes_its_default() -> None:
     assert [method.name for method in study.methods] == ["auto"]
     assert study.tolerance == 1e-8
     assert study.sweep == {}
-    assert study.keep_orbit is None
+    assert study.keep.orbit is None
     assert len(study.cases()) == 1
 
 
@@ -275,7 +281,7 @@ def test_a_value_that_is_swept_anyway_is_not_in_the_digest() -> None:
         ),
         ("methods=[exact,shooting]", lambda study: [m.name for m in study.methods] == ["exact", "shooting"]),
         ("title=a = b", lambda study: study.title == "a = b"),
-        ("keep.orbit=9", lambda study: study.keep_orbit == 9),
+        ("keep.orbit=9", lambda study: study.keep.orbit == 9),
         ("expect=[]", lambda study: study.expect == ()),
     ],
 )
@@ -392,7 +398,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         .replace("tolerance: 1e-6", "tolerance: .inf")
         .replace("num: 120", "num: 1")
         .replace("keep: {orbit: 200}", "plugins: 5")
-        .replace("column: error", "column: eror")
+        .replace("column: error", "column: 5")
     )
 
     assert mistakes(written(text)) == [
@@ -405,7 +411,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         "study.yaml:17:12: tolerance: must be a finite number, got .inf",
         "study.yaml:19:49: sweep.scene.belt_speed.num: must be >= 2, got 1",
         "study.yaml:21:10: plugins: must be a list of Python files such as [my_law.py], got 5",
-        "study.yaml:23:58: expect[0].column: must be a result column, got the text 'eror'",
+        "study.yaml:23:58: expect[0].column: must be text, got 5 (put it in quotes)",
     ]
 
 
@@ -581,14 +587,15 @@ def test_the_schema_and_the_reader_allow_the_same_keys_in_expectations_and_range
     made = schema()["properties"]
     probe = good() | {"expect": [{"zzz": 1}], "sweep": {"scene.belt_speed": {"zzz": 1}}, "keep": {"zzz": 1}}
 
-    kinds = made["expect"]["items"]["oneOf"]
-    assert set(_allowed(probe, "expect[0].zzz")) == {key for kind in kinds for key in kind["properties"]}
+    kept = made["keep"]["$ref"], made["expect"]["items"]["$ref"]
+    keep, expect = (schema()["$defs"][each.rpartition("/")[2]]["properties"] for each in kept)
+    assert set(_allowed(probe, "expect[0].zzz")) == set(expect)
     for one, own in zip(
         made["sweep"]["properties"]["scene.belt_speed"]["oneOf"][1:], ({}, {"within": 1}), strict=True
     ):
         probe["sweep"] = {"scene.belt_speed": {"zzz": 1, **own}}
         assert set(_allowed(probe, "sweep.scene.belt_speed.zzz")) == set(one["properties"])
-    assert set(_allowed(probe, "keep.zzz")) == set(made["keep"]["properties"])
+    assert set(_allowed(probe, "keep.zzz")) == set(keep)
 
 
 def _properties(made: Any, path: str = "") -> dict[str, Any]:

@@ -22,7 +22,7 @@ from frictionlab.analysis.fit.result import STOPPED, FittedLaw, FittedLaws
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.runner.arguments import given_law, given_scene
 from frictionlab.scene.scene import Scene
-from frictionlab.study.data import SLIP_ALONE
+from frictionlab.study.keys import SLIP_ALONE
 from frictionlab.study.study import Study
 from frictionlab.values.quantities import at_least_one
 
@@ -37,8 +37,8 @@ def measured_of(study: Study) -> Measurements:
     """What a study's files hold. Raises WrongData, which names the file, the row and the column."""
     assert study.data is not None
     folder = Path() if study.path is None else study.path.parent
-    tables = [_read(folder / name, dict(study.data.columns)) for name in study.data.files]
-    measured = given_measurements(tables, ", ".join(study.data.files), study.scene.dimensional is not None)
+    tables = [_read(folder / name, dict(study.data.columns)) for name in study.data.file]
+    measured = given_measurements(tables, ", ".join(study.data.file), study.scene.dimensional is not None)
     if not measured.is_path and study.scene == Scene(**SLIP_ALONE):
         raise WrongData(f"{study.path or 'study'}: {NEEDS_SCENE}")
     return measured

@@ -9,10 +9,11 @@ from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
-from frictionlab.study.data import read_range
+from frictionlab.study.keys import StudyKeys
 from frictionlab.study.study import kind_of
-from frictionlab.values.notes import PYTHON, Notes, closest, dotted
+from frictionlab.values.notes import closest
 from frictionlab.values.quantities import Floats, given_values
+from frictionlab.values.validation import checked_value
 
 LOG_ABOVE = 100.0
 """Ratio of the ends of a positive range above which it is searched by its logarithm."""
@@ -132,11 +133,9 @@ def _numbers_of(values: Mapping[str, Any], before: str) -> dict[str, Any]:
 
 def _range(name: str, given: Any) -> FreeNumber:
     """Raises ValueError with the first mistake in a range."""
-    notes = Notes(notation=PYTHON)
-    read = read_range(given, name, notes)
-    if notes.all:
-        raise ValueError(f"{dotted(notes.all[0].path)}: {notes.all[0].what}")
-    assert read is not None
-    low, high, spacing = read
+    read, what, _ = checked_value(StudyKeys, "free", {name: given})
+    if what is not None:
+        raise ValueError(f"free.{name}: {what}")
+    low, high, spacing = read[name].low, read[name].high, read[name].spacing
     far = low > 0.0 and high / low >= LOG_ABOVE
     return FreeNumber(name, low, high, spacing == "log" or (spacing is None and far))

@@ -317,7 +317,7 @@ def needs_of_study(study: Study, within: float | None = None) -> Iterator[Needs]
     """The same of every curve of a study, whatever its methods and its tolerance. Raises BrokenPlugin."""
     kinds = {choice.law_class: choice.kind for choice in study.laws}
     laws = registry.Laws({choice.kind: choice.law_class for choice in study.laws})
-    asked = _Asked(laws, kinds, study.seconds_per_point, study.units.get(BELT_SPEEDS[1]))
+    asked = _Asked(laws, kinds, study.limit.seconds_per_point, study.units.get(BELT_SPEEDS[1]))
     first = study.methods[0].label
     for curve in study.foreseen().curves():
         if curve.method.label != first:

@@ -211,8 +211,8 @@ class _StudyReader:
         laws, methods = self._laws(), self._methods()
         given = {name: value for name, value in self._tree.items() if name in StudyKeys.model_fields}
         keys = build_record(StudyKeys, given, (), self._notes)
-        scene = self._tree.get("scene")
-        scene = None if scene is None else build_record(Scene, scene, ("scene",), self._notes)
+        there = "scene" in self._tree
+        scene = build_record(Scene, self._tree["scene"], ("scene",), self._notes) if there else None
         if self._notes.all or scene is None or keys is None:
             return None
         told = dict(keys) | self._referring(keys, scene, sweep, laws, methods)

@@ -14,6 +14,7 @@ from study_mistakes import EDITS, GOOD, HINTS
 from frictionlab.scene.dimensional import without_unit
 from frictionlab.study import registry
 from frictionlab.study.expectations import Expectation
+from frictionlab.study.keys import STUDY_KEYS
 from frictionlab.study.load import load_study, parse_study
 from frictionlab.study.schema import schema
 from frictionlab.study.study import Study
@@ -154,6 +155,12 @@ def test_what_refers_to_other_parts_is_told_once_these_have_no_mistakes() -> Non
             parse_study(good() | wrong | other)
 
         assert [mistake.what for mistake in caught.value.mistakes] == told
+
+
+@pytest.mark.parametrize("key", STUDY_KEYS)
+def test_a_key_without_a_value_is_told(key: str) -> None:
+    with pytest.raises(StudyError, match=rf"^study: {key}: must be"):
+        parse_study(good() | {key: None})
 
 
 def test_what_is_left_out_takes_its_default() -> None:

@@ -32,7 +32,7 @@ from frictionlab.bench.record import (
 from frictionlab.bench.stability import StabilityMaps
 from frictionlab.methods.base import Method
 from frictionlab.study.load import read_study
-from frictionlab.study.parts import items, method_choice
+from frictionlab.study.parts import method_choice
 from frictionlab.study.study import Study
 from frictionlab.study.yaml_source import Source, read_file
 from frictionlab.values import columns
@@ -317,8 +317,9 @@ class _Reader:
         if len(varied) > 1:
             self._wrong((*path, varied[1]), f"only one value may be a list, and {varied[0]} is one")
         quantity = varied[0] if varied else ""
-        with self._noted() as notes:
-            values = items(item[quantity], (*path, quantity), "[1.0e-6]", notes) if varied else [0.0]
+        values = item[quantity] if varied else [0.0]
+        if not values:
+            self._wrong((*path, quantity), "the list is empty; give at least one, such as [1.0e-6]")
         solvers = list[tuple[BenchSetting, Method | Peer]]()
         for value in values:
             each = item | {quantity: value} if varied else item

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 @options.no_plugins
 @options.workers
 @options.as_json
+@click.option("--force", is_flag=True, help="Replace the fit of another study in DIR.")
 def fit_command(
     study: Path,
     out: Path | None,
@@ -41,16 +42,18 @@ def fit_command(
     plugins: Plugins,
     workers: int | None,
     as_json: bool,
+    force: bool,
 ) -> int:
     """Fit the laws of STUDY to the measurements that its data name, by the numbers that its free names.
 
     fit.csv has each number with its errors and its interval of 95 %, fit_laws.csv how well each law fits and
     foretells blocks left out, residuals.csv what is left. A figure and a page stand beside. An interrupt keeps the
-    laws that are fitted.
+    laws that are fitted. study.yaml is the study as it was read.
     """
     from frictionlab.analysis.fit.api import fit_measured, measured_of
     from frictionlab.analysis.fit.measured import WrongData
     from frictionlab.analysis.fit.residuals import STARTS
+    from frictionlab.runner.files import write_whole
     from frictionlab.runner.table import records
     from frictionlab.study.load import load_study
 
@@ -59,6 +62,9 @@ def fit_command(
         if not getattr(asked, key):
             raise CommandError(WRONG, f"{study}: a study to fit has data and free; write {example}")
     folder = out or Path("fits") / study.stem
+    kept, text = folder / "study.yaml", asked.to_yaml()
+    if not force and kept.is_file() and kept.read_text("utf-8", "replace") != text:
+        raise CommandError(WRONG, f"{folder} has a fit of another study: --force replaces it, or give -o DIR")
     try:
         measured = measured_of(asked)
         options.make_folder(folder)
@@ -68,6 +74,7 @@ def fit_command(
             ways = (STARTS, meter.begins, workers or os.cpu_count() or 1)
             found = fit_measured(measured, laws, asked.scene, asked.free or {}, *ways)
             found = found.complete(meter.begins)
+        write_whole(kept, text.encode())
     except (WrongData, ValueError) as problem:
         raise CommandError(WRONG, str(problem)) from None
     _write(found, asked.title or study.stem, folder)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, Record
 from frictionlab.methods.base import REDUCED_MODELS, Method
 from frictionlab.scene.waveforms import Form
 from frictionlab.study import registry
@@ -124,75 +124,102 @@ def natural(value: Any) -> Any:
     return value
 
 
-def items(given: Any, path: KeyPath, example: str, notes: Notes) -> list[Any]:
-    """The items of a list that must not be empty."""
-    if not isinstance(given, list):
-        notes.add(path, f"must be a list such as {example}, got {value_text(given)}")
-        return []
-    if not given:
-        notes.add(path, f"the list is empty; give at least one, such as {example}")
-    return given
+class Registered(NamedTuple):
+    """Laws or methods of which a study may name some: how a list of them is read."""
+
+    what: str
+    example: str
+    names: Sequence[str]
+    named: Callable[[str], type[Record]]
+    unknown: Callable[[str], tuple[str, str]]
 
 
-def law_choice(given: Any, path: KeyPath, laws: registry.Laws, notes: Notes) -> LawChoice | None:
-    """One law; None, noted, where there is a mistake."""
-    if not isinstance(given, dict):
-        notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {value_text(given)}")
-        return None
-    if isinstance(kind := given.get("kind"), str) and kind not in laws.names():
-        if not notes.below(("plugins",)):  # an unreadable law file may define it
-            said, hint = laws.unknown(kind)
-            remedy = "install the package that provides it, or list its file under plugins"
-            notes.add((*path, "kind"), f"{said}; {remedy}", hint)
-        return None
-    if (item := _item(given, "law", laws.names(), path, notes)) is None:
-        return None
-    law = build_record(laws.named(item.kind), item.parameters, path, notes)
-    if law is None:
-        return None
-    laws.check(item.kind, law)
-    return LawChoice(item.label, item.kind, plain_values(law), type(law))
+def law_choices(given: Any, laws: registry.Laws, notes: Notes) -> tuple[LawChoice, ...]:
+    """The laws without a mistake; mistakes are noted."""
+
+    def unknown(name: str) -> tuple[str, str]:
+        said, hint = laws.unknown(name)
+        return f"{said}; install the package that provides it, or list its file under plugins", hint
+
+    kinds = Registered("law", "{kind: coulomb, mu: 0.4}", laws.names(), laws.named, unknown)
+    read = [_choice(item, path, kinds, notes) for item, path in _items(given, ("laws",), kinds, notes)]
+    found = []
+    for label, kind, law in filter(None, read):
+        laws.check(kind, law)
+        found.append(LawChoice(label, kind, plain_values(law), type(law)))
+    return tuple(found)
+
+
+def method_choices(given: Any, notes: Notes) -> tuple[MethodChoice, ...]:
+    """The methods without a mistake; mistakes are noted."""
+    items = _items(given, ("methods",), _methods(), notes)
+    return tuple(filter(None, (method_choice(item, path, notes) for item, path in items)))
 
 
 def method_choice(given: Any, path: KeyPath, notes: Notes) -> MethodChoice | None:
     """One method, by its name or with parameters; None, noted, where there is a mistake."""
-    names = registry.method_names()
-    if not isinstance(given, dict):
-        name = _name(given, "method", names, path, notes)
-        return None if name is None else MethodChoice(name, name, {})
-    item = _item(given, "method", names, path, notes)
-    if item is None:
+    if (read := _choice(given, path, _methods(), notes)) is None:
         return None
-    if not item.parameters:
-        return MethodChoice(item.label, item.kind, {})
-    method = build_record(registry.method_class(item.kind), item.parameters, path, notes)
-    return (
-        None if method is None else MethodChoice(item.label, item.kind, method.model_dump(exclude_unset=True))
-    )
+    label, kind, method = read
+    return MethodChoice(label, kind, method.model_dump(exclude_unset=True) if method else {})
 
 
-class _Item(NamedTuple):
-    """A law or method as it is given."""
+def _methods() -> Registered:
+    def unknown(name: str) -> tuple[str, str]:
+        said, hint = unknown_name("method", name, registry.method_names())
+        return f"{said}; install the package that provides it", hint
 
-    label: str
-    kind: str
-    parameters: dict[str, Any]
+    return Registered("method", "auto", registry.method_names(), registry.method_class, unknown)
 
 
-def _item(
-    given: dict[str, Any], what: str, installed: Sequence[str], path: KeyPath, notes: Notes
-) -> _Item | None:
-    """A law or method of one of these names; None, noted, where its name is wrong."""
-    if _named_by_its_key(given, installed, path, notes):
+def _items(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> Iterator[tuple[Any, KeyPath]]:
+    """The items of a list that must not be empty, each with its path; equal labels are noted."""
+    if not isinstance(given, list):
+        notes.add(path, f"must be a list such as [{kinds.example}], got {value_text(given)}")
+        return
+    if not given:
+        notes.add(path, f"the list is empty; give at least one, such as [{kinds.example}]")
+    first: dict[str, int] = {}
+    for index, item in enumerate(given):
+        label = label_of(item)
+        if label is not None and first.setdefault(label, index) != index:
+            at = (*path, index, "label") if isinstance(item, dict) and "label" in item else (*path, index)
+            notes.add(at, f"{path[0]}[{first[label]}] has the label '{label}' too; give each its own label")
+        yield item, (*path, index)
+
+
+def _choice(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> tuple[str, str, Any] | None:
+    """Label, kind and record of an item; the record of a method without parameters is None."""
+    if (kind := _kind(given, path, kinds, notes)) is None:
         return None
-    kind = None
-    if "kind" in given:
-        kind = _name(given["kind"], what, installed, (*path, "kind"), notes)
-    else:
-        notes.add((*path, "kind"), "required key is missing")
-    label = _label(given["label"], (*path, "label"), notes) if "label" in given else kind or ""
-    parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
-    return None if kind is None else _Item(label, kind, parameters)
+    told = given if isinstance(given, dict) else {}
+    label = notes.text(told["label"], (*path, "label")) if "label" in told else kind
+    if not label.strip() or not label.isprintable():
+        notes.add((*path, "label"), "must be one line of visible text")
+    values = {key: value for key, value in told.items() if key not in ("kind", "label")}
+    if not values and kinds.what == "method":
+        return label, kind, None
+    made = build_record(kinds.named(kind), values, path, notes)
+    return None if made is None else (label, kind, made)
+
+
+def _kind(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> str | None:
+    """The registered name of an item; None, noted, where it is none."""
+    if isinstance(given, dict) and "kind" not in given:
+        if not _named_by_its_key(given, kinds.names, path, notes):
+            notes.add((*path, "kind"), "required key is missing")
+        return None
+    name, at = (given["kind"], (*path, "kind")) if isinstance(given, dict) else (given, path)
+    if kinds.what == "law" and not isinstance(given, dict):
+        notes.add(path, f"must be a mapping such as {kinds.example}, got {value_text(given)}")
+    elif not isinstance(name, str):
+        notes.add(at, f"must be the name of a {kinds.what}, got {value_text(name)}")
+    elif name in kinds.names:
+        return name
+    elif not notes.below(("plugins",)):  # an unreadable law file may define it
+        said, hint = kinds.unknown(name)
+        notes.add(at, said, hint)
+    return None
 
 
 def label_of(given: Any) -> str | None:
@@ -201,33 +228,10 @@ def label_of(given: Any) -> str | None:
     return label if isinstance(label, str) else None
 
 
-def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
-    """Note every item with the same label as an earlier one."""
-    first: dict[str, int] = {}
-    for index, item in enumerate(given):
-        label = label_of(item)
-        if label is not None and first.setdefault(label, index) != index:
-            own = isinstance(item, dict) and "label" in item
-            path: KeyPath = (head, index, "label") if own else (head, index)
-            notes.add(path, f"{head}[{first[label]}] has the label '{label}' too; give each its own label")
-
-
-def _name(given: Any, what: str, installed: Sequence[str], path: KeyPath, notes: Notes) -> str | None:
-    """A registered name."""
-    if isinstance(given, str) and given in installed:
-        return given
-    if isinstance(given, str):
-        said, hint = unknown_name(what, given, installed)
-        notes.add(path, f"{said}; install the package that provides it", hint)
-    else:
-        notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
-    return None
-
-
-def _named_by_its_key(given: dict[str, Any], installed: Iterable[str], path: KeyPath, notes: Notes) -> bool:
+def _named_by_its_key(given: dict[str, Any], installed: Sequence[str], path: KeyPath, notes: Notes) -> bool:
     """Whether an item is written as ``name: {...}``, which is noted with the way to write it."""
     name = next((key for key in given if key in installed), None)
-    if name is None or "kind" in given:
+    if name is None:
         return False
     values = {key: value for key, value in given.items() if key != name}
     values |= given[name] if isinstance(given[name], dict) else {}
@@ -235,10 +239,3 @@ def _named_by_its_key(given: dict[str, Any], installed: Iterable[str], path: Key
     inside = [f"{key}: {value_text(value)}" for key, value in values.items()] if plain and values else ["..."]
     notes.on_key((*path, name), "a name goes after kind", f"write {{kind: {name}, {', '.join(inside)}}}")
     return True
-
-
-def _label(given: Any, path: KeyPath, notes: Notes) -> str:
-    label = notes.text(given, path)
-    if isinstance(given, str) and (not label.strip() or not label.isprintable()):
-        notes.add(path, "must be one line of visible text")
-    return label

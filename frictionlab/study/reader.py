@@ -12,6 +12,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.units import SPRING
 from frictionlab.study import registry
 from frictionlab.study.axes import (
     FINEST,
@@ -36,11 +37,9 @@ from frictionlab.study.parts import (
     LawChoice,
     MethodChoice,
     coefficient_of,
-    items,
     label_of,
-    law_choice,
-    method_choice,
-    note_equal_labels,
+    law_choices,
+    method_choices,
 )
 from frictionlab.study.sweep_targets import swept_paths
 from frictionlab.study.sweeps import Sweeps, read_sweeps
@@ -208,7 +207,8 @@ class _StudyReader:
         self._known = brought.laws
         read_law_numbers(self._tree, self._known)
         sweep = self._sweep()
-        laws, methods = self._laws(), self._methods()
+        laws = law_choices(self._tree["laws"], self._known, self._notes) if "laws" in self._tree else ()
+        methods = method_choices(self._tree.get("methods", list(DEFAULT_METHODS)), self._notes)
         given = {name: value for name, value in self._tree.items() if name in StudyKeys.model_fields}
         keys = build_record(StudyKeys, given, (), self._notes)
         there = "scene" in self._tree
@@ -260,22 +260,6 @@ class _StudyReader:
             return f"laws.{label_of(law)}.{path[2]}"
         return column_of(".".join(map(str, path)))
 
-    def _laws(self) -> tuple[LawChoice, ...]:
-        if "laws" not in self._tree:
-            return ()
-        given = items(self._tree["laws"], ("laws",), "[{kind: coulomb, mu: 0.4}]", self._notes)
-        note_equal_labels(given, "laws", self._notes)
-        read = [
-            law_choice(item, ("laws", index), self._known, self._notes) for index, item in enumerate(given)
-        ]
-        return tuple(choice for choice in read if choice is not None)
-
-    def _methods(self) -> tuple[MethodChoice, ...]:
-        given = items(self._tree.get("methods", list(DEFAULT_METHODS)), ("methods",), "[auto]", self._notes)
-        note_equal_labels(given, "methods", self._notes)
-        read = [method_choice(item, ("methods", index), self._notes) for index, item in enumerate(given)]
-        return tuple(choice for choice in read if choice is not None)
-
     def _referring(
         self,
         keys: StudyKeys,
@@ -292,7 +276,8 @@ class _StudyReader:
         for index, name in enumerate(files):
             self._check_file(name, ("data", "file", *([index] if len(files) > 1 else [])))
         expect = [of_table(each, ("expect", k), table, notes) for k, each in enumerate(keys.expect)]
-        return {"expect": tuple(expect), "columns": self._columns(keys.columns, table)}
+        may_be_free = scene.is_free or any(path.endswith((".spring", SPRING[0])) for path in sweep.sweep)
+        return {"expect": tuple(expect), "columns": self._columns(keys.columns, table, may_be_free)}
 
     def _check_file(self, name: str, path: KeyPath) -> None:
         """Note a file of measurements that is not there."""
@@ -301,10 +286,14 @@ class _StudyReader:
             there = [each.name for each in folder.glob("*") if each.is_file()] if folder.is_dir() else []
             self._notes.add(path, f"there is no file {folder / name}", did_you_mean(name, there))
 
-    def _columns(self, given: tuple[str, ...] | None, table: Table) -> tuple[str, ...] | None:
+    def _columns(
+        self, given: tuple[str, ...] | None, table: Table, may_be_free: bool
+    ) -> tuple[str, ...] | None:
         known, what = (*table.results, *columns.GROUPS), "result column or a group of them"
         for index, name in enumerate(given or ()):
             result_column(name, ("columns", index), known, self._notes, what)
+            if name.startswith("drift") and not may_be_free:
+                self._notes.add(("columns", index), "is of a body that no spring holds: give spring: false")
         return None if given is None else tuple(dict.fromkeys(given))
 
     def _table(

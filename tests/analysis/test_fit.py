@@ -258,6 +258,10 @@ def test_the_command_writes_tables_a_figure_and_a_page(
     assert {"fit.svg", "fit.png"} == {path.name for path in (folder / "figures").iterdir()}
     assert "coulomb" in (folder / "report.html").read_text()
     assert len(pd.read_csv(folder / "residuals.csv")) == 30
+    study.write_text(STUDY.replace("[0.1, 1.0]", "[0.2, 1.0]"))
+    assert cli.main(["fit", str(study)]) == 2
+    assert "has a fit of another study: --force replaces it" in capsys.readouterr().err
+    assert cli.main(["fit", str(study), "--force"]) == 0
 
 
 @deep("seconds of fits")

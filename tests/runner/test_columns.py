@@ -163,6 +163,7 @@ def test_a_name_that_is_no_column_is_a_mistake_at_its_place(tmp_path: Path, caps
     [
         ([], "must be a list of at least 1, got 0"),
         ([1], r"columns\[0\]: must be text, got 1"),
+        (["drift"], "is of a body that no spring holds: give spring: false"),
         ("flokuet", r"columns\[0\]: must be a result column or a group"),
         (["enrgies"], "did you mean 'energies'"),
     ],

@@ -40,6 +40,10 @@ CASES: tuple[tuple[Applies, Solve], ...] = (
 """Kinds of scene and law, and what answers a curve of them: the first that applies."""
 
 
+def _case(scene: Scene, law: FrictionLaw) -> Solve:
+    return next(solve for applies, solve in CASES if applies(scene, law))
+
+
 CONSTANT_CONTACT = (
     "normal_load_variation.contact: constant keeps the stiffness of one bristle; a law with another memory has none "
     "of its own: give per_load"
@@ -106,12 +110,11 @@ class Shooting(Method):
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""
-        solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
-        return solve(scenes, law, tolerance)
+        return _case(scenes[0], law)(scenes, law, tolerance)
 
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
         """Follow a driven mass by the period map that closes its orbits, an undriven one in turns of that."""
-        solve = next(solve for applies, solve in CASES if applies(scene, law))
+        solve = _case(scene, law)
         if solve is solve_undriven:
             return Undriven(scene, law, tolerance).from_the_start(periods)
         return follow_motion(scene, law, periods, tolerance) if solve is solve_driven else []
@@ -120,7 +123,7 @@ class Shooting(Method):
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:
         """Motions of a driven mass followed to their ends, and from the ends at one belt speed on at the next."""
-        solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
+        solve = _case(scenes[0], law)
         return follow_states(scenes, law, tolerance, starts) if solve is solve_driven else []
 
 

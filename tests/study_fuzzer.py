@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import random
+import re
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -17,54 +18,10 @@ from frictionlab.values.printable import printable
 
 LONGEST = 10.0
 """Time [s] of one processor that one study may take."""
-WORDS = (
-    "",
-    "kind",
-    "mu",
-    "start",
-    "stop",
-    "num",
-    "spacing",
-    "log",
-    "coulomb",
-    "dahl",
-    "scene.belt_speed",
-    "yes",
-    "~",
-)
+WORDS = re.split(" ", " kind mu start stop num spacing log coulomb dahl scene.belt_speed yes ~")
 ODD = (
-    *(
-        "\x00",
-        "\x1b[31m",
-        "\x7f",
-        "\x85",
-        "\u2028",
-        "\u202e",
-        "\ufeff",
-        "\U0001f600",
-        "é",
-        "\\",
-    ),
-    *(
-        "'",
-        '"',
-        "#",
-        "\t",
-        "\n",
-        "\r",
-        "&a",
-        "*a",
-        "<<",
-        "!!python/object",
-        "? ",
-        "- ",
-        "{",
-        "[",
-        "|",
-        ">",
-        "%",
-        "@",
-    ),
+    *"\x00\x7f\x85\u2028\u202e\ufeff\U0001f600é\\\t\n\r'\"#{[|>%@",
+    *("\x1b[31m", "? ", "- ", "&a", "*a", "<<", "!!python/object"),
 )
 NUMBERS = (
     *(0, -0.0, 1, -1, 2, 7.5, 1e-300, 5e-324, 1e300, 1.7976931348623157e308, float("nan"), float("inf")),

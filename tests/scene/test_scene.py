@@ -42,69 +42,12 @@ def without(tree, path):
     return {key: value for key, value in tree.items() if key != head}
 
 
-def complaints(values):
-    """Where a scene is refused and why: dotted path, sentence."""
-    with pytest.raises(WrongValues) as caught:
-        Scene(**values)
-    return {mistake.path: mistake.what for mistake in caught.value.mistakes}
-
-
-NUMBERS = [
-    "damping_ratio",
-    "normal_load",
-    "belt_speed",
-    "drive.unbalance",
-    "drive.frequency",
-    "drive.phase",
-    "transverse.natural_frequency",
-    "transverse.damping_ratio",
-    "transverse.load.amplitude",
-    "transverse.load.phase",
-]
-NOT_POSITIVE = ["normal_load", "drive.frequency", "transverse.natural_frequency"]
 NEGATIVE = ["damping_ratio", "drive.unbalance", "transverse.damping_ratio", "transverse.load.amplitude"]
-
-
-REFUSED = [
-    *((PLANAR, path, value) for path in NUMBERS for value in (math.nan, math.inf, "5", True, [5.0])),
-    *((PLANAR, path, -1.0) for path in NEGATIVE + NOT_POSITIVE),
-    *((PLANAR, path, 0.0) for path in NOT_POSITIVE),
-    *((SLIDING, f"slip.{name}", math.nan) for name in ("velocity_amplitude", "frequency", "phase")),
-    *((SLIDING, f"slip.{name}", -1.0) for name in ("velocity_amplitude", "frequency")),
-]
-
-
-@pytest.mark.parametrize(("values", "path", "value"), REFUSED)
-def test_a_value_that_makes_no_sense_is_refused_by_the_name_of_its_field(values, path, value):
-    assert list(complaints(put(values, path, value))) == [path]
 
 
 @pytest.mark.parametrize("path", NEGATIVE)
 def test_zero_is_allowed_where_it_makes_sense(path):
     assert Scene(**put(PLANAR, path, 0.0)).degrees_of_freedom == 2
-
-
-@pytest.mark.parametrize("path", ["", "drive.", "transverse.", "transverse.load.", "initial."])
-def test_an_unknown_key_is_refused_by_its_name(path):
-    values = put(PLANAR, "initial.x", 0.0)
-
-    assert list(complaints(put(values, f"{path}wobble", 1.0))) == [f"{path}wobble"]
-
-
-@pytest.mark.parametrize("path", ["drive", "transverse.load"])
-def test_a_force_needs_exactly_one_of_unbalance_and_amplitude(path):
-    twice = put(put(PLANAR, f"{path}.unbalance", 1.0), f"{path}.amplitude", 1.0)
-    never = put(PLANAR, path, {"frequency": 1.0} if path == "drive" else {})
-
-    for values in (twice, never):
-        ((place, message),) = complaints(values).items()
-        assert place == path
-        assert "exactly one of unbalance and amplitude" in message
-
-
-@pytest.mark.parametrize("name", ["damping_ratio", "normal_load"])
-def test_what_a_free_mass_lacks_is_named(name):
-    assert complaints(without(FREE, name)) == {name: "required key is missing"}
 
 
 def test_a_scene_without_a_drive_has_a_frequency_of_one_and_starts_at_rest_on_the_belt():
@@ -120,43 +63,22 @@ def test_a_scene_without_a_drive_has_a_frequency_of_one_and_starts_at_rest_on_th
 
 
 def test_all_that_is_missing_is_named_at_once():
-    missing = "required key is missing"
-
-    assert complaints({"belt_speed": 5.0}) == {"damping_ratio": missing, "normal_load": missing}
-    assert list(complaints(without(FREE, "belt_speed"))) == ["belt_speed"]
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("damping_ratio", 0.1), ("drive", FREE["drive"]), ("transverse", ACROSS), ("initial", {"x": 1.0})],
-)
-def test_what_has_no_place_beside_a_prescribed_slip_is_named(name, value):
-    assert complaints(SLIDING | {name: value}) == {name: "leave it out with a prescribed slip"}
+    with pytest.raises(WrongValues) as caught:
+        Scene(belt_speed=5.0)
+    assert [each.path for each in caught.value.mistakes] == ["damping_ratio", "normal_load"]
 
 
-def test_a_prescribed_slip_has_one_frequency_and_only_one():
+def test_a_prescribed_slip_has_the_frequency_of_the_one_that_has_one():
     across = {"velocity_amplitude": 1.0}
-    with_own = across | {"frequency": 2.0}
-    ((where, twice),) = complaints(SLIDING | {"transverse_slip": with_own}).items()
-    ((there, never),) = complaints({"belt_speed": 1.0, "transverse_slip": across}).items()
 
-    assert where == there == "transverse_slip.frequency"
-    assert twice == "leave it out, slip.frequency holds for both"
-    assert never == "required key is missing where slip is left out"
     assert Scene(**SLIDING, transverse_slip=across).frequency == 2.0
-    assert Scene(belt_speed=1.0, transverse_slip=with_own | {"frequency": 3.0}).frequency == 3.0
+    assert Scene(belt_speed=1.0, transverse_slip=across | {"frequency": 3.0}).frequency == 3.0
 
 
 def test_the_normal_load_of_a_prescribed_slip_is_one_unless_given():
     assert Scene(**SLIDING).normal_load == 1.0
     assert Scene(**SLIDING, normal_load=7.0).normal_load == 7.0
     assert Scene(**SLIDING).motion().normal_load == 1.0
-
-
-@pytest.mark.parametrize("name", ["x2", "velocity2"])
-def test_a_start_across_the_belt_needs_a_motion_across_the_belt(name):
-    assert complaints(FREE | {"initial": {name: 1.0}}) == {f"initial.{name}": "needs transverse"}
-    assert getattr(Scene(**PLANAR, initial={name: 1.0}).initial, name) == 1.0
 
 
 @pytest.mark.parametrize(

@@ -66,8 +66,6 @@ def test_a_sweep_over_frequency_at_constant_acceleration_needs_nothing_linked() 
     ("changes", "said"),
     [
         ({"mass": "1 kg"}, "mass: leave it out with a prescribed slip"),
-        ({"damping_ratio": 0.1}, "damping_ratio: leave it out with a prescribed slip"),
-        ({"drive": {"amplitude": "1 N", "frequency": "1 Hz"}}, "drive: leave it out with a prescribed slip"),
         (
             {"transverse_slip": {"velocity_amplitude": "1 mm/s", "frequency": "1 Hz"}},
             "transverse_slip.frequency: leave it out, slip.frequency_rad_per_s holds for both",

@@ -1,4 +1,4 @@
-"""The command line, as ``python -m frictionlab``."""
+"""Command line, as ``python -m frictionlab``."""
 
 import sys
 

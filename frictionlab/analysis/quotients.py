@@ -55,7 +55,7 @@ class Pair(NamedTuple):
 
 
 def asked_for(numbers: dict[str, float], paths: Any) -> list[str]:
-    """The paths asked for, all where none are. Raises ValueError, TypeError."""
+    """Return the paths asked for, all where none are. Raises ValueError, TypeError."""
     if paths is None:
         return list(numbers)
     if isinstance(paths, str) or not all(isinstance(path, str) for path in paths):
@@ -81,7 +81,7 @@ def _cells(values: dict[str, Any]) -> list[tuple[str, Any]]:
 
 
 _Values = Callable[[Floats], list[Floats | None]]
-"""The function at such offsets, each as an array; None where it has no value there."""
+"""Function at such offsets, each as an array; None where it has no value there."""
 
 _LEVELS = 4
 _NARROWER = 8.0
@@ -91,17 +91,17 @@ CORNER = "there is no derivative here: the two one-sided ones differ"
 NO_VALUES = "there are no values close to this one on either side"
 _PARTS = 0.5 ** np.arange(_LEVELS)
 _AMPLIFIED = 8.0
-"""What errors of single values come to in an extrapolated difference, over those in one over the smallest offset."""
+"""Growth of the errors of single values in an extrapolated difference, over that in one over the smallest offset."""
 _SAFETY = 10.0
 """On what the last extrapolation changes: a jump of the second derivative leaves as much as that."""
 _FAR_FROM_ROUNDING = 1e3
 """Errors over those of rounding from which on narrower offsets are tried even though errors have risen."""
 _DEGREE = 5
-"""Of the polynomial through the values of both sides; what it leaves is taken for noise."""
+"""Degree of the polynomial through the values of both sides; what it leaves is taken for noise."""
 
 
 class Derivative(NamedTuple):
-    """The derivative and its error [of each component]; tries: how often offsets were chosen. reason: '' if found."""
+    """Derivative and its error [of each component]; tries: how often offsets were chosen. reason: '' if found."""
 
     value: Floats
     error: Floats
@@ -112,7 +112,7 @@ class Derivative(NamedTuple):
 def derivative(
     values: _Values, here: Floats, widest: float, noise: Floats, scatters: bool = True
 ) -> Derivative:
-    """The derivative of ``values`` at offset 0, where its value is ``here`` and each is in error by ``noise``.
+    """Return the derivative of ``values`` at offset 0, where its value is ``here`` and each is in error by ``noise``.
 
     widest: the largest offset. Offsets shrink until errors no longer fall. scatters: whether values that miss a
     polynomial may be in error by as much.
@@ -157,7 +157,7 @@ def _complete(values: list[Floats | None]) -> Floats | None:
 def _from_both(
     ahead: Floats | None, behind: Floats | None, here: Floats, width: float, noise: Floats, scatters: bool
 ) -> tuple[Derivative | None, str]:
-    """The derivative, or why there is none over these offsets."""
+    """Return the derivative, or why there is none over these offsets."""
     steps, rounding = (width * _PARTS)[:, None], _rounding(width, noise)
     if ahead is None and behind is None:
         return None, NO_VALUES

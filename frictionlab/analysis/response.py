@@ -31,11 +31,11 @@ from frictionlab.theory.sliding_stability import steady_deflection
 from frictionlab.values.quantities import EPSILON, Floats, Written, at_least_one
 
 _WIDEST = 0.5
-"""Of a number: the largest offset of difference quotients."""
+"""Largest offset of difference quotients, relative to the number."""
 _STEADY = 1e-9
-"""Of what changes a memory: what its rate may be in steady sliding."""
+"""Rate that a memory may have in steady sliding, over the terms that change it."""
 _SHARP = 1e-6
-"""Of what is differentiated: an error that is larger is that of a corner."""
+"""Relative error of a derivative above which there is a corner."""
 
 
 class Linearized(NamedTuple):
@@ -59,7 +59,7 @@ class Linearized(NamedTuple):
 
 
 def linearized(law: FrictionLaw, speed: float, across: bool) -> Linearized:
-    """The law about steady sliding at this speed, or about rest at 0, along the slip or across it.
+    """Return the law about steady sliding at this speed, or about rest at 0, along the slip or across it.
 
     Raises ValueError where there is no such state or where the law has a corner there.
     """
@@ -99,7 +99,7 @@ def _steady_memory(law: FrictionLaw, speed: float) -> list[float]:
 
 
 def _answer_of(law: Any, speed: float, memory: list[float], across: bool) -> Callable[[Floats], Floats]:
-    """What gives the rates of all numbers and friction after small changes of slip and memory, along or across."""
+    """Return a function of small changes of slip and memory, along or across: the rates of all, and friction."""
     unit: Any = 1j if across else 1.0
     change = 1.0 if law.memory_kind == "scalars" else unit
 
@@ -124,7 +124,7 @@ def _rates_and_friction(law: Any, v: Any, memory: list[Any], across: bool, at_re
 
 
 def _jacobian(law: FrictionLaw, answer: Callable[[Floats], Floats], sizes: Floats) -> tuple[Floats, bool]:
-    """The derivatives of all that is answered by all numbers, and whether memory is steady. Raises ValueError."""
+    """Derivatives of all that is answered by all numbers, and whether memory is steady. Raises ValueError."""
     ways = np.eye(len(sizes)) * sizes
     here = answer(np.zeros(len(sizes)))
     terms = np.abs(here) + np.sum([np.abs(answer(_WIDEST * way) - here) / _WIDEST for way in ways], axis=0)
@@ -212,7 +212,7 @@ def impedance(
 
 
 def finite(name: str, values: ArrayLike) -> Floats:
-    """The values of an argument of this name as an array. Raises ValueError."""
+    """Return the values of an argument of this name as an array. Raises ValueError."""
     given = np.asarray(values)
     if given.dtype.kind not in "iuf" or not given.size or not np.isfinite(given).all():
         raise ValueError(f"{name} must be finite numbers, got {values!r}")
@@ -221,7 +221,7 @@ def finite(name: str, values: ArrayLike) -> Floats:
 
 _TOLERANCE = 1e-12
 _SAMPLES = 64
-"""Of a period and a harmonic, of friction within the elastic range."""
+"""Samples of a period, times a harmonic, of friction within the elastic range."""
 
 
 def describing_function(
@@ -302,7 +302,7 @@ def describing_function(
 
 
 def _without_units(law: FrictionLaw) -> FrictionLaw:
-    """The law with numbers alone: all arguments are in its units."""
+    """Return the law with numbers alone: all arguments are in its units."""
     texts = {name: float(value) for name, value in law if isinstance(value, Written)}
     return law.model_copy(update=texts)
 
@@ -347,13 +347,13 @@ def _degrees(amplitude: complex) -> float:
 
 
 def _phasors(parts: HarmonicParts) -> Complexes:
-    """Of friction; its phase is not known where it is none."""
+    """Return the phasors of friction; a phase is not known where there is none."""
     turn = np.exp(1j * np.radians(np.nan_to_num(parts.friction_phase[1:])))
     return np.asarray(parts.friction_amplitude[1:] * turn)
 
 
 def _elastic(law: BristleLaw, pair: Complexes, frequency: float, count: int) -> Complexes:
-    """Of deflections that follow a slip about rest, about no deflection: any other mean changes no harmonic."""
+    """Return the friction of deflections that follow a slip about rest: a mean deflection changes no harmonic."""
     theta = np.arange(_SAMPLES * count) * (2.0 * math.pi / (_SAMPLES * count))
     slips, deflections = (
         (each[:, None] * np.exp(1j * theta)).imag for each in (pair, pair / (1j * frequency))

@@ -33,7 +33,7 @@ DOTS: Any = {"marker": "o", "markersize": 0.9, "mew": 0.0, "ls": "none", "color"
 
 
 def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """The rows of each figure, by its name: one for every curve on which anything was found, with its points."""
+    """Rows of each figure, by its name: one for every curve on which anything was found, with its points."""
     if "point" not in attractors:
         return {}
     inputs = [name for name in attractors.columns if name in INPUTS or name.startswith(("scene.", "law."))]
@@ -44,7 +44,7 @@ def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
 
 
 def bifurcation_figures(attractors: pd.DataFrame) -> dict[str, Callable[[Heading], Figure]]:
-    """What draws each of them, by its name."""
+    """Return what draws each of them, by its name."""
     return {name: partial(_figure, rows) for name, rows in bifurcations(attractors).items()}
 
 

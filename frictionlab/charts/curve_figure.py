@@ -58,7 +58,7 @@ BAND_LOOK: Any = {"linewidth": 6.0, "alpha": 0.3, "solid_capstyle": "butt"}  # w
 
 @dataclass(frozen=True)
 class CurveFigure:
-    """What a figure of curves shows. words: of a column, where they are not its own; level: whether zero is a line.
+    """Contents of a figure of curves. words: of a column, where they are not its own; level: whether zero is a line.
 
     onsets: of the whole study, None where none are marked. more: entries of the legend.
     """
@@ -78,7 +78,7 @@ class CurveFigure:
 
     @cached_property
     def logarithmic(self) -> tuple[bool, bool]:
-        """Whether the axes of all pictures are logarithmic, along and upwards: a figure has one kind of axis."""
+        """Check whether the axes of all pictures are logarithmic, along and upwards: they are alike in a figure."""
         curves = self.looks.curves
         along = is_logarithmic(np.concatenate([curve.column(self.family.abscissa) for curve in curves]))
         pictures = [
@@ -90,7 +90,7 @@ class CurveFigure:
         return along, apart and all(map(_is_positive, itertools.chain(*pictures)))
 
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
-        """The figure, with matplotlib's settings as they are."""
+        """Return the figure, with matplotlib's settings as they are."""
         pictures = [(panel, column) for panel in self.family.panels for column in self.columns]
         sheet = Sheet.blank(len(pictures), heading)
         titles = headings([panel for panel, _ in pictures])
@@ -132,7 +132,7 @@ class CurveFigure:
         return found
 
     def onsets_of(self, curve: CurveData) -> list[OnsetMark]:
-        """The marks on the axis under a curve."""
+        """Return the marks on the axis under a curve."""
         return onsets_on(curve, self.onsets, self.family.abscissa) if self.family.along_speed else []
 
     def _entries(self) -> list[Line2D]:
@@ -160,7 +160,7 @@ class _Picture:
     axes: Axes
 
     def draw(self, width: float, title: str) -> Axes:
-        """The picture. width: about [point]."""
+        """Return the picture. width: about [point]."""
         axes, abscissa = self.axes, self.of.family.abscissa
         curves = [curve for curve in self.of.looks.curves if curve.panel == self.panel]
         self.lines(axes, curves)
@@ -184,7 +184,7 @@ class _Picture:
         return axes
 
     def lines(self, axes: Axes, curves: Sequence[CurveData]) -> None:
-        """The curves alone."""
+        """Draw the curves alone."""
         if self.of.level and self.column == "mean_friction":
             axes.axhline(0.0, color="0.45", linewidth=0.6, zorder=0)
         for curve in curves:
@@ -237,7 +237,7 @@ class _Picture:
 def _with_kinks(
     x: CurveNumbers, y: CurveNumbers, kinks: Sequence[float]
 ) -> tuple[CurveNumbers, CurveNumbers]:
-    """The points of a curve and, at V_lin, one of the level that it keeps from there on, where it keeps one."""
+    """Points of a curve and, at V_lin, one of the level that it keeps from there on, where it keeps one."""
     for kink in kinks:
         beyond = x >= kink if kink > 0.0 else x <= kink
         places = np.flatnonzero(beyond & np.isfinite(y))
@@ -260,7 +260,7 @@ def _draw_errors(axes: Axes, curve: CurveData, x: CurveNumbers, color: Any) -> N
 
 
 def _label_decades(axis: Axis) -> None:
-    """Of few decades 1, 2 and 5 are labelled, as plain numbers: every multiple would be one on the other."""
+    """Label 1, 2 and 5 of an axis of few decades, as plain numbers: every multiple would be one on the other."""
     low, high = sorted(axis.get_view_interval())
     if high < 1000.0 * low:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -269,12 +269,12 @@ def _label_decades(axis: Axis) -> None:
 
 
 def _is_positive(curve: pd.Series) -> bool:
-    """Whether a curve keeps to what a logarithmic axis shows well; one without numbers does."""
+    """Check whether a curve keeps to what a logarithmic axis shows well; one without numbers does."""
     return bool(curve.isna().all() or curve.min() > LEAST_SHARE * curve.max())
 
 
 def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
-    """Whether every curve keeps to a level above rounding, and the levels are decades apart."""
+    """Check whether every curve keeps to a level above rounding, and the levels are decades apart."""
     known = [curve for curve in curves if curve.notna().any()]
     if not known:
         return False

@@ -1,4 +1,4 @@
-"""The curves of a result table: the input along the axis, and the input that distinguishes curves."""
+"""Curves of a result table: the input along the axis, and the input that distinguishes curves."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _ROUNDING = 1e-15  # rounding of a mean of order one
 
 @dataclass(frozen=True)
 class CurveData:
-    """The rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
+    """Rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
 
     member: the swept value that distinguishes the curve within its picture, if any; panel: the values that select its
     picture. place: the indices of its law, member and method among those of the table. kinks: V_lin and its mirror
@@ -50,7 +50,7 @@ class CurveData:
     same: tuple[str, ...] = ()
 
     def column(self, name: str) -> CurveNumbers:
-        """The numbers of a column, NaN where it does not apply."""
+        """Return the numbers of a column, NaN where it does not apply."""
         return self.rows[name].to_numpy(dtype=float)
 
     def having(self, status: str) -> NDArray[np.bool_]:
@@ -58,7 +58,7 @@ class CurveData:
         return (self.rows["status"] == status).to_numpy(dtype=bool)
 
     def rows_in(self, table: pd.DataFrame, columns: Container[str]) -> pd.DataFrame:
-        """The rows of a table that are those of this curve, by their inputs: what is not among these columns."""
+        """Rows of a table that are those of this curve, by their inputs: what is not among these columns."""
         own = self.rows.iloc[0]
         same = pd.Series(True, table.index)
         for name in [each for each in table.columns if each not in columns and each in own]:
@@ -85,22 +85,22 @@ class Family:
     linked: Mapping[str, str] = field(default_factory=dict)
 
     def word(self, name: str) -> str:
-        """The name of an input in words, with what changes together with it."""
+        """Return the name of an input in words, with what changes together with it."""
         return self.linked.get(name) or word(name)
 
     @property
     def panels(self) -> list[tuple[SweptValue, ...]]:
-        """The pictures the curves belong to, in order."""
+        """Return the pictures the curves belong to, in order."""
         return list(dict.fromkeys(curve.panel for curve in self.curves))
 
     @property
     def along_speed(self) -> bool:
-        """Whether belt speed, as given or over V_lin, runs along the axis."""
+        """Check whether belt speed, as given or over V_lin, runs along the axis."""
         return self.abscissa == SPEED_RATIO or is_belt_speed(self.abscissa)
 
 
 def family_of(table: pd.DataFrame) -> Family | None:
-    """The curves of a table; None where no number is swept.
+    """Return the curves of a table; None where no number is swept.
 
     Several laws are compared in a picture for each value of the scene, and the parameter of most values tells the
     curves of a law apart; where that makes too many pictures, each law has its own. Of one law the quantity of most
@@ -120,7 +120,7 @@ def family_of(table: pd.DataFrame) -> Family | None:
 
 
 def family_by(table: pd.DataFrame, sweep: Sweep, panels: list[str], member: str | None) -> Family | None:
-    """The curves of a table along the axis of its sweep; None where it has none.
+    """Return the curves of a table along the axis of its sweep; None where it has none.
 
     panels: what sets up pictures, ``law`` where each law has its own.
     """
@@ -143,7 +143,7 @@ def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
 
 
 def _with_one_friction(table: pd.DataFrame) -> pd.DataFrame:
-    """The table with mu_kinetic under mu, where both are swept over the same values: friction of every law."""
+    """Return the table with mu_kinetic under mu, where both are swept over the same values: friction of every law."""
     mu, kinetic = "law.mu", "law.mu_kinetic"
     if mu not in table or kinetic not in table or not {mu, kinetic} <= set(swept_columns(table)):
         return table
@@ -158,7 +158,7 @@ def _with_one_friction(table: pd.DataFrame) -> pd.DataFrame:
 def curves_of(
     table: pd.DataFrame, abscissa: str, panels: Sequence[str], member: str | None = None
 ) -> list[CurveData]:
-    """The curves of a table along this column, picture by picture: numbers by their size, words as they come."""
+    """Curves of a table along this column, picture by picture: numbers by their size, words as they come."""
     laws, methods = table["law"].unique().tolist(), table["method"].unique().tolist()
     members = table[member].dropna().unique().tolist() if member else []
     if member and is_numeric_dtype(table[member]):
@@ -185,7 +185,7 @@ def _heights(curve: CurveData) -> list[tuple[bool, float]]:
 
 
 def drawn_once(curves: Sequence[CurveData], columns: Sequence[str]) -> list[CurveData]:
-    """The curves without those of a method that are the line of an earlier one in all of these columns.
+    """Return the curves without those of a method that are the line of an earlier one in all of these columns.
 
     That is: no point is further off than both errors allow, nor far enough to be seen. Methods are counted anew.
     """
@@ -203,7 +203,7 @@ def drawn_once(curves: Sequence[CurveData], columns: Sequence[str]) -> list[Curv
 def _is_line_of(
     curve: CurveData, one: CurveData, everyone: Sequence[CurveData], columns: Sequence[str]
 ) -> bool:
-    """Whether a curve of another method lies on this one, of the same law and values, wherever it has numbers."""
+    """Check whether a curve of another method, of the same law and values, lies on this one."""
     alike = (curve.law, curve.member, curve.panel) == (one.law, one.member, one.panel)
     if not alike or curve.method == one.method or len(curve.rows) != len(one.rows):
         return False
@@ -214,7 +214,7 @@ def _is_line_of(
 
 
 def _coincide(curve: CurveData, one: CurveData, column: str, beside: Sequence[CurveData]) -> bool:
-    """Whether no difference in a column can be seen beside the others of a picture, nor the mean's errors deny it."""
+    """Check whether no difference in a column is visible beside the others of a picture, nor the mean's errors."""
     here, there = curve.column(column), one.column(column)
     known, values = np.isfinite(here), np.concatenate([each.column(column) for each in beside])
     near = np.full(len(here), LEAST_VISIBLE * np.ptp(values[np.isfinite(values)]) if known.any() else 0.0)
@@ -248,7 +248,7 @@ def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
 
 
 def _moves_across(rows: pd.DataFrame, moving: NDArray[np.bool_]) -> bool:
-    """Whether something moves the body across the belt: a load or slip there, or one at an angle to the belt."""
+    """Check whether a load or slip across the belt, or at an angle to it, moves the body."""
     if "transverse_velocity_amplitude" in rows:
         across = rows["transverse_velocity_amplitude"].to_numpy(dtype=float)
         return bool((np.abs(across[moving]) > 0.0).any())

@@ -45,7 +45,7 @@ BAND = "mean_friction", "mean_low", "mean_high"
 
 
 def normalized(family: Family) -> Family | None:
-    """The same curves against belt speed over V_lin, mean friction over that of steady sliding.
+    """Return the same curves against belt speed over V_lin, mean friction over that of steady sliding.
 
     None where belt speed is not the axis, or a curve with a number has no V_lin.
     """
@@ -78,7 +78,7 @@ def _in_shares(curve: CurveData, abscissa: str) -> pd.DataFrame:
 
 
 def reference_law(family: Family, against: str | None = None) -> str | None:
-    """The label of the law that others are held against; None where there is only one.
+    """Return the label of the law that others are held against; None where there is only one.
 
     That is the one asked for, else that of Coulomb friction, else the first.
     """
@@ -110,7 +110,7 @@ def differences(family: Family, law: str) -> Family | None:
 
 
 def _comparable(one: CurveData, other: CurveData) -> bool:
-    """Whether the other has numbers at the same points of the same picture, of the same swept value if it has one."""
+    """Check whether the other has numbers at the same points of the same picture and swept value."""
     member = other.member is None or other.member.value is None or other.member == one.member
     if one.panel != other.panel or not member or other.rows["mean_friction"].isna().all():
         return False

@@ -1,4 +1,4 @@
-"""The figures of a result table, for the page of a journal, each written in the formats asked for."""
+"""Figures of a result table, for the page of a journal, each written in the formats asked for."""
 
 from __future__ import annotations
 
@@ -64,12 +64,12 @@ MOST_UNASKED = 3
 """Figures that are drawn where no more are asked for."""
 IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
 IN_SHARES = {"mean_friction": "normalized_friction"}
-"""What is drawn in place of a column where axes are shares."""
+"""Columns drawn in place of others where axes are shares."""
 Drawer = Callable[[Heading], Figure]
 
 
 class Kept(NamedTuple):
-    """What a run kept beside its table: what reads the orbits of rows, and harmonics.csv."""
+    """Tables beside that of a run: a reader of the orbits of rows, and harmonics.csv."""
 
     orbits: Callable[[Sequence[int]], pd.DataFrame | None]
     harmonics: pd.DataFrame | None
@@ -77,7 +77,7 @@ class Kept(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FigureData:
-    """What figures are drawn of: a result table, and of the same run what there is of the rest.
+    """Data of figures: a result table, and what else the same run has.
 
     curves: of ``curves.csv``, with the shapes; attractors, boundaries: of
     ``attractors.csv`` and ``boundaries.csv``. units: in which the numbers of a
@@ -116,7 +116,7 @@ class FigureData:
 
     @cached_property
     def family(self) -> Family | None:
-        """The curves; None where no number is swept."""
+        """Return the curves; None where no number is swept."""
         return family_of(self.table)
 
     @cached_property
@@ -126,11 +126,11 @@ class FigureData:
 
     @cached_property
     def shares(self) -> Family | None:
-        """The curves in shares of V_lin and of steady sliding; None where they are not drawn so."""
+        """Return the curves in shares of V_lin and of steady sliding; None where they are not drawn so."""
         return normalized(self.family) if self.family and self.options.normalized else None
 
     def axes_of(self, name: str) -> tuple[list[str], list[str]]:
-        """What one of ``FIGURES`` is drawn over, and which columns it shows."""
+        """Return what one of ``FIGURES`` is drawn over, and which columns it shows."""
         if self.maps is not None:
             return [*self.maps.over], self.columns[name]
         family = self.shares or self.family
@@ -139,7 +139,7 @@ class FigureData:
         return [family.abscissa], [shown.get(column, column) for column in self.columns[name]]
 
     def described(self, name: str) -> str:
-        """What a figure shows, in words made from its axes."""
+        """Return what a figure shows, in words made from its axes."""
         if name in self.columns:
             over, shown = (map(plain_word, names) for names in self.axes_of(name))
             told = f"{', '.join(shown)} over {' and '.join(over)}"
@@ -151,25 +151,25 @@ class FigureData:
         return told.format(reference=self.reference, shares=shares, abscissa=abscissa)
 
     def rank(self, name: str) -> tuple[bool, int]:
-        """The place of a figure among others: first the one that shows what the title says, then the most telling."""
+        """Place of a figure among others: first the one that shows what the title says, then the most telling."""
         kind = name.lstrip("0123456789").lstrip("_")
         return kind != self.options.finding, FIGURE_NAMES.index(kind)
 
     def heading(self, name: str, first: bool, into: Axes | None = None) -> Heading:
-        """What stands above the pictures of a figure: the title where it is the first, else what it shows."""
+        """Return what stands above the pictures of a figure: the title where it is the first, else what it shows."""
         finds = first and bool(self.title)
         told = printable(self.title) if finds else self.described(name)
         return Heading(told if self.options.title else "", self.options.width, finds, into)
 
     @property
     def error_seen(self) -> bool:
-        """Whether the error of the mean could be seen beside the mean."""
+        """Check whether the error of the mean could be seen beside the mean."""
         mean = self.table["mean_friction"]
         return bool((self.table["error"] > LEAST_VISIBLE * (mean.max() - mean.min())).any())
 
     @property
     def reference(self) -> str | None:
-        """The law that others are held against; None where there is only one."""
+        """Return the law that others are held against; None where there is only one."""
         against = self.words.get("law", {}).get(self.options.against or "", self.options.against)
         return reference_law(self.family, against) if self.family else None
 
@@ -184,7 +184,7 @@ class FigureData:
 
     @cached_property
     def _shown(self) -> dict[str, str]:
-        """The columns of the table by their names without the unit in which they are shown."""
+        """Return the columns of the table by their names without the unit in which they are shown."""
         return by_plain_names(self.table)
 
 
@@ -218,7 +218,7 @@ def _remove_others(folder: Path, files: Sequence[Path]) -> None:
 
 
 def figures_of(data: FigureData, into: Axes | None = None) -> dict[str, Callable[[], Figure]]:
-    """What draws each figure of a run, by its name, the most telling first."""
+    """Return what draws each figure of a run, by its name, the most telling first."""
     found = {} if data.family is None else _of_table(data, data.family)
     if data.kept is not None and data.family is not None:
         found |= orbit_figures(data.family, data.kept.orbits, data.units)
@@ -231,7 +231,7 @@ def figures_of(data: FigureData, into: Axes | None = None) -> dict[str, Callable
 
 
 def chosen_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
-    """Of these the ones that are drawn: all where that is asked for, else the first and those that need asking."""
+    """Return those that are drawn: all where that is asked for, else the first and those that need asking."""
     found = figures_of(data)
     first = list(found)[:MOST_UNASKED]
     return {name: draw for name, draw in found.items() if data.options.all or name in {*first, "shape"}}

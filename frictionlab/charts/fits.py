@@ -27,11 +27,11 @@ from frictionlab.values.columns import word
 from frictionlab.values.printable import printable
 
 POINTS_SHOWN = 1000
-"""Of a path of slip in the first picture: some of its middle, one after the other."""
+"""Points of a path of slip in the first picture: some of its middle, one after the other."""
 MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
 LAGS = 200
 FEW_TICKS = 5
-"""Of belt speeds in m/s, whose numbers are long."""
+"""Ticks along belt speeds in m/s, whose numbers are long."""
 
 
 def fit_figure(found: Any, title: str = "") -> Figure:

@@ -71,7 +71,7 @@ def with_jumps(samples: pd.DataFrame) -> pd.DataFrame:
 
 
 def _reaches_zero(slip: np.ndarray, at: int) -> float:
-    """The share of the step after a sample at which slip does, as it went before, else as it is after."""
+    """Return the share of the step after a sample at which slip does, as it went before, else as it is after."""
     slope = slip[at] - slip[at - 1] if at else 0.0
     share = -slip[at] / slope if slope else -1.0
     return float(share if 0.0 < share < 1.0 else slip[at] / (slip[at] - slip[at + 1]))
@@ -86,10 +86,10 @@ KINDS = {
     "phase": [PHASE],
     "time_series": [IN_TIME, ("tau", "friction")],
 }
-"""Of each figure what its pictures show of a point, along the axis and upwards."""
+"""Columns that the pictures of each figure show of a point, along the axis and upwards."""
 HARMONIC = "harmonic"
 _SPEEDS = dict(zip(("belt_speed", ALSO_IN_SI["belt_speed"][0]), BELT_SPEEDS, strict=True))
-"""The belt speeds of harmonics.csv, by the columns of the table."""
+"""Belt speeds of harmonics.csv, by the columns of the table."""
 AMPLITUDES = {
     "velocity_harmonics": ("velocity_amplitude", "amplitude of the harmonic\nof the velocity"),
     "friction_harmonics": ("friction_amplitude", "amplitude of the harmonic\nof the friction coefficient"),
@@ -108,7 +108,7 @@ ACROSS_LINE: Any = {
 """Seen where it lies on the velocity along the belt, too."""
 LOAD_LINE: Any = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (6, 2))}
 LOAD_SHARE = 0.9
-"""Of the largest velocity of a picture: how high its load is drawn, which has a scale of its own."""
+"""Height of the load, which has a scale of its own, over the largest velocity of a picture."""
 FREQUENCIES = tuple(
     f"scene.{part}.frequency" for part in ("drive", "belt_vibration", "normal_load_variation", "slip")
 )
@@ -122,7 +122,7 @@ class DrawnOrbit(NamedTuple):
     samples: pd.DataFrame
 
     def shown(self, name: str) -> str:
-        """The column of a sample in the units in which it is shown, those of the scene where it has others."""
+        """Return the column of a sample in the units in which it is shown, those of the scene where it has others."""
         return shown_column(self.samples, name)
 
     def column(self, name: str) -> CurveNumbers:
@@ -135,23 +135,23 @@ class DrawnOrbit(NamedTuple):
 
     @property
     def moves_across(self) -> bool:
-        """Whether there is motion across the belt."""
+        """Check whether there is motion across the belt."""
         return bool(self.column(self.shown("v2")).any())
 
     @property
     def load(self) -> CurveNumbers:
-        """What drives the mass along the belt."""
+        """Return what drives the mass along the belt."""
         return self.column(self.shown("load"))
 
     @property
     def drive_period(self) -> float | None:
-        """The time between two starts of the drive; None where nothing drives."""
+        """Return the time between two starts of the drive; None where nothing drives."""
         known = [float(self.row[name]) for name in FREQUENCIES if name in self.row and self.row[name] > 0.0]
         return 2.0 * np.pi / known[0] if known else None
 
 
 class OrbitPicture(NamedTuple):
-    """The orbits of one picture and what they have in common."""
+    """Orbits of one picture and what they have in common."""
 
     settings: tuple[SweptValue, ...]
     loops: list[DrawnOrbit]
@@ -162,7 +162,7 @@ def orbit_figures(
     orbits: Callable[[Sequence[int]], pd.DataFrame | None],
     units: Mapping[str, ShownUnit],
 ) -> dict[str, Callable[[Heading], Figure]]:
-    """What draws those of some points of a table, by its name; none where no orbit is kept. orbits: of rows.
+    """Return what draws those of some points of a table, by its name; none where no orbit is kept. orbits: of rows.
 
     units: in which the numbers of a scene in SI units were written.
     """
@@ -217,14 +217,14 @@ def _draw(
 
 
 def _without_marker(entry: Line2D) -> Line2D:
-    """The entry of a line as its curve is drawn here; one that is a marker alone stays."""
+    """Return the entry of a line as its curve is drawn here; one that is a marker alone stays."""
     if entry.get_linestyle() != "None":
         entry.set_marker("")
     return entry
 
 
 def _side_by_side(points: Sequence[OrbitPicture]) -> list[OrbitPicture]:
-    """The first point of each panel, then the second of each, that panels stand beside each other."""
+    """Return the first point of each panel, then the second of each, that panels stand beside each other."""
     panels: dict[tuple[SweptValue, ...], list[OrbitPicture]] = {}
     for point in points:
         panels.setdefault(point.settings[:-1], []).append(point)
@@ -275,7 +275,7 @@ def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple
 
 
 def _closed(inside: pd.DataFrame, row: pd.Series) -> pd.DataFrame:
-    """The samples in time, and the first again after the last, but for a motion that does not repeat."""
+    """Return the samples in time, and the first again after the last, but for a motion that does not repeat."""
     if row.get("error_kind") == "statistical":
         return inside
     # in SI units, too, where the scene is
@@ -286,7 +286,7 @@ def _closed(inside: pd.DataFrame, row: pd.Series) -> pd.DataFrame:
 
 
 def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: Looks) -> Axes:
-    """The orbits of a point as a picture."""
+    """Return the orbits of a point as a picture."""
     along, upwards = kind
     for loop in point.loops:
         x, y, label = loop.column(loop.shown(along)), loop.column(loop.shown(upwards)), loop.label(along)
@@ -317,7 +317,7 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
 def harmonic_figures(
     harmonics: pd.DataFrame, options: FigureOptions
 ) -> dict[str, Callable[[Heading], Figure]]:
-    """What draws each, by its name; none where nothing is swept. harmonics: of ``harmonics.csv``, means left out."""
+    """Return the drawers by name; none where nothing is swept. harmonics: of ``harmonics.csv``, means left out."""
     family = _family(harmonics)
     if family is None:
         return {}
@@ -333,7 +333,7 @@ def harmonic_figures(
 
 
 def _amplitude(harmonics: pd.DataFrame, column: str, label: str) -> tuple[str, str]:
-    """The column of an amplitude in the units in which it is shown, and its label."""
+    """Return the column of an amplitude in the units in which it is shown, and its label."""
     shown = shown_column(harmonics, column)
     return shown, f"{label} [{unit_shown(shown)}]" if unit_shown(shown) else label
 

@@ -1,4 +1,4 @@
-"""What tells the curves of a figure apart, in colour and in grey print, and what its legend says of them.
+"""Looks by which the curves of a figure differ, in colour and in grey print, and its legend.
 
 Laws differ in colour and in dashes; where there is one law, so do the words of a sweep, else the methods. A swept
 number runs from dark to light within a colour, with a marker for each value. What is left has markers.
@@ -33,12 +33,12 @@ def luminance(color: Any) -> float:
 
 
 def contrast(color: Any) -> float:
-    """Of a colour against white, 1 to 21."""
+    """Compute the contrast of a colour against white, 1 to 21."""
     return 1.05 / (luminance(color) + 0.05)
 
 
 def with_contrast(color: Any, wanted: float) -> tuple[float, float, float]:
-    """The colour mixed with as much black or white as gives it this contrast against white."""
+    """Return the colour mixed with as much black or white as gives it this contrast against white."""
     light, level = _linear(color), 1.05 / wanted - 0.05
     own = float(_WEIGHTS @ light)
     mixed = light * level / own if level < own else 1.0 - (1.0 - light) * (1.0 - level) / (1.0 - own)
@@ -62,13 +62,13 @@ BROADEST = 0.9  # what the first of several methods is broader than the last, ho
 
 @dataclass(frozen=True)
 class Looks:
-    """The looks of these curves; each has a place among the laws, swept values and methods of its table."""
+    """Looks of these curves; each has a place among the laws, swept values and methods of its table."""
 
     curves: Sequence[CurveData]
 
     @cached_property
     def sizes(self) -> tuple[int, int, int]:
-        """How many laws, swept values and methods there are."""
+        """Return how many laws, swept values and methods there are."""
         laws, members, methods = zip(*(curve.place for curve in self.curves), strict=True)
         return max(laws) + 1, max(members) + 1, max(methods) + 1
 
@@ -88,12 +88,12 @@ class Looks:
         }
 
     def color(self, curve: CurveData) -> tuple[float, float, float]:
-        """The colour of what sets it, from dark to light along a swept number."""
+        """Return the colour of what sets it, from dark to light along a swept number."""
         color = self.cycle(curve)["color"]
         return to_rgb(color) if self.sizes[1] == 1 or self._words else self.shade(color, curve.place[1])
 
     def shade(self, color: str, member: int) -> tuple[float, float, float]:
-        """The colour for the swept value at this place, from dark to light."""
+        """Return the colour for the swept value at this place, from dark to light."""
         return with_contrast(color, DARKEST * (PALEST / DARKEST) ** (member / max(1, self.sizes[1] - 1)))
 
     def cycle(self, curve: CurveData) -> dict[str, Any]:
@@ -103,7 +103,7 @@ class Looks:
         return CYCLE[place % len(CYCLE)]
 
     def marked(self, y: NDArray[np.float64], curve: CurveData) -> list[int]:
-        """The points that get a marker: some of a curve with neighbours, and all that no line reaches."""
+        """Return the points that get a marker: some of a curve with neighbours, and all that no line reaches."""
         known = np.isfinite(y)
         beside = np.pad(known, 1)
         marks = ~(beside[2:] | beside[:-2])
@@ -113,7 +113,7 @@ class Looks:
         return [int(place) for place in np.flatnonzero(marks & known)]
 
     def _stagger(self, points: int, curve: CurveData) -> tuple[int, int]:
-        """The first marker of a curve and the step to the next: about ten, fewer where many methods coincide."""
+        """First marker of a curve and the step to the next: about ten, fewer where many methods coincide."""
         (law, member, method), (laws, members, methods) = curve.place, self.sizes
         step = max(1, points // 10)
         if not self._methods_have_markers:
@@ -123,26 +123,26 @@ class Looks:
 
     @cached_property
     def shown(self) -> set[int]:
-        """The swept values that get markers and a place in the legend: all of a few, else some, first to last."""
+        """Swept values that get markers and a place in the legend: all of a few, else some, first to last."""
         return set(some_of(range(self.sizes[1]), MOST_VALUES_IN_LEGEND))
 
     def sample(self, curve: CurveData) -> dict[str, Any]:
-        """The look of its line in the legend: without a marker where its curve has none."""
+        """Return the look of its line in the legend: without a marker where its curve has none."""
         return self.line(curve) | ({} if self._has_signs else {"marker": ""})
 
     @cached_property
     def _words(self) -> bool:
-        """Whether the swept values are words, which are no steps of a scale."""
+        """Check whether the swept values are words, which are no steps of a scale."""
         return any(curve.member is not None and isinstance(curve.member.value, str) for curve in self.curves)
 
     @property
     def words_or_signs(self) -> bool:
-        """Whether a swept value has no shade or no marker of its own."""
+        """Check whether a swept value has no shade or no marker of its own."""
         return self._words or self._methods_have_markers
 
     @property
     def _methods_have_markers(self) -> bool:
-        """Whether neither colour and dashes tell methods apart, or they are many."""
+        """Check whether neither colour and dashes tell methods apart, or they are many."""
         laws, _, methods = self.sizes
         return methods > MOST_BY_DASHES or (methods > 1 and (laws > 1 or self._words))
 
@@ -190,13 +190,13 @@ def _apart(looks: Looks, curves: Sequence[CurveData]) -> list[Line2D]:
 
 
 def told_of(looks: Looks, curve: CurveData) -> str:
-    """What a curve is called at its end."""
+    """Return what a curve is called at its end."""
     methods = (curve.method, *curve.same) if looks.sizes[2] > 1 or curve.same else ()
     return curve_name(looks, curve, methods)
 
 
 def curve_name(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
-    """The names of what tells a curve from the others: law, methods, swept value."""
+    """Return the names of what tells a curve from the others: law, methods, swept value."""
     told = _names(looks, curve, methods)
     if curve.member is not None and curve.member.value is not None:
         told.append(curve.member.brief if told else curve.member.text)
@@ -211,7 +211,7 @@ def _names(looks: Looks, curve: CurveData, methods: Sequence[str]) -> list[str]:
 
 
 def joined_methods(methods: Sequence[str], room: int = BESIDE) -> str:
-    """The names of methods that share a line."""
+    """Return the names of methods that share a line."""
     names = [shortened(name, room) for name in methods]
     together = " = ".join(names)
     return together if len(together) <= 2 * room else f"{names[0]} = {len(names) - 1} others"

@@ -90,7 +90,7 @@ class MapFigure:
     boundaries: pd.DataFrame | None = None
 
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
-        """The figure, with matplotlib's settings as they are."""
+        """Return the figure, with matplotlib's settings as they are."""
         wide = abreast(len(self.pictures), heading)
         each = -(-len(self.pictures) // wide) * wide  # a column begins on a line of its own
         sheet = Sheet.blank(each * len(self.columns), heading, self._entries())
@@ -127,7 +127,7 @@ class MapFigure:
         return MapValues(x, y, rows[column].to_numpy(dtype=float).reshape(len(y), len(x)))
 
     def _draw_v_lin(self, axes: Axes, picture: CurveData) -> None:
-        """The line on which the belt runs at V_lin: from its formula, else through that of every row."""
+        """Draw the line on which the belt runs at V_lin: from its formula, else through that of every row."""
         ratio = self._grid(picture, SPEED_RATIO)
         y, edges = ratio.y, cell_edges(ratio.y)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -140,7 +140,7 @@ class MapFigure:
         axes.plot(x, y, color="white", linestyle="dashed", linewidth=1.1, path_effects=[DARK_EDGE])
 
     def _solved_lines(self, picture: CurveData, column: str) -> pd.DataFrame:
-        """The lines of levels of a measure that were solved for, of the law and the method of a picture."""
+        """Return the lines of levels of a measure that were solved for, of the law and the method of a picture."""
         if self.boundaries is None:
             return pd.DataFrame(columns=[*BOUNDARIES])
         own = picture.rows_in(self.boundaries, (*BOUNDARIES, *self.over))
@@ -181,7 +181,7 @@ class MapFigure:
 
 
 def map_of(table: pd.DataFrame) -> MapFigure | None:
-    """The maps of a table; None where not two numbers take values enough.
+    """Return the maps of a table; None where not two numbers take values enough.
 
     Along a sweep of belt speed that is a number of the scene whose values are more than lines can tell apart.
     """
@@ -194,7 +194,7 @@ def map_of(table: pd.DataFrame) -> MapFigure | None:
 
 
 def map_of_curves(curves: pd.DataFrame) -> MapFigure | None:
-    """The maps of the measures of curves; None where not two numbers beside belt speed take values enough."""
+    """Return the maps of the measures of curves; None where not two numbers beside belt speed take values enough."""
     sweep = sweep_of(curves)
     found = _figure(curves, sweep.inputs, sweep.numbers)
     known = [name for name in OF_CURVES if name in curves and curves[name].notna().any()]
@@ -264,7 +264,7 @@ def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize, solved: pd.Data
 
 
 def cell_edges(values: CurveNumbers) -> CurveNumbers:
-    """Of cells around these values, half way between neighbours."""
+    """Return the edges of cells around these values, half way between neighbours."""
     steps = np.log(values) if is_logarithmic(values) else values
     half = 0.5 * np.diff(steps)
     edges = np.concatenate([[steps[0] - half[0]], steps[:-1] + half, [steps[-1] + half[-1]]])

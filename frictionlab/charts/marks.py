@@ -19,7 +19,7 @@ from frictionlab.charts.sheet import LEGEND_FONT, text_width
 from frictionlab.values.columns import ONSETS
 
 SIGNS = {"stick_begins": ">", "stick_ends": "<", "reversal_ends": "d"}
-"""The mark of each on the axis of belt speed: arrowheads enclose a window of stick."""
+"""Mark of each on the axis of belt speed: arrowheads enclose a window of stick."""
 ONSET_LOOK: Any = {"markersize": 4.5, "markeredgecolor": "0.15", "markeredgewidth": 0.5}
 SAME_SPEED = 1e-6  # share of a belt speed: an onset and V_lin closer than this are one
 MOST_LINES = 3  # of names above a picture
@@ -112,7 +112,7 @@ WIDEST = 0.3  # of a picture
 
 
 class CurveEnd(NamedTuple):
-    """The right end of a curve, its name and its colour."""
+    """Right end of a curve, its name and its colour."""
 
     x: float
     y: float
@@ -121,7 +121,7 @@ class CurveEnd(NamedTuple):
 
 
 def ends_fit(axes: Axes, ends: Sequence[CurveEnd], width: float) -> bool:
-    """Whether all names fit beside a picture of this width [point], each at an end of its own."""
+    """Check whether all names fit beside a picture of this width [point], each at an end of its own."""
     if not 1 < len(ends) <= MOST_LABELS or len({end.x for end in ends}) > 1:
         return False
     if max(text_width(axes.figure, end.name, LEGEND_FONT) for end in ends) > WIDEST * width:
@@ -165,7 +165,7 @@ def moved_apart(heights: CurveNumbers) -> CurveNumbers:
 
 
 def _heights(axes: Axes, ends: Sequence[CurveEnd]) -> CurveNumbers:
-    """Of ends above the foot of the picture [point]."""
+    """Return the heights of ends above the foot of the picture [point]."""
     places = axes.transScale.transform([(end.x, end.y) for end in ends])[:, 1]
     low, high = axes.transScale.transform([(ends[0].x, level) for level in axes.get_ylim()])[:, 1]
     return np.asarray(HEIGHT * (places - low) / (high - low))

@@ -1,4 +1,4 @@
-"""What every part of a scene is worth: bars of the change without it, a panel a curve, the tolerance as a line."""
+"""Effect of every part of a scene: bars of the change without it, a panel a curve, the tolerance as a line."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _draw_panel_of_needs(axes: Axes, names: list[str], rows: pd.DataFrame, ends:
 
 
 def _ends(table: pd.DataFrame) -> tuple[float, float]:
-    """Of the axis, the same for all curves."""
+    """Return the ends of the axis, the same for all curves."""
     largest = (table["change"].abs() + table["change_error"]).max()
     return float(table["within"].min()) * 10.0**-BELOW, 3.0 * float(max(largest, table["within"].max()))
 

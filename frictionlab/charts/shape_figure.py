@@ -1,4 +1,4 @@
-"""The shape of curves: each with its chord, the area between them and the verdict in words."""
+"""Shape of curves: each with its chord, the area between them and the verdict in words."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CHORD_LOOK: Any = {"color": "0.2", "linewidth": 0.7, "linestyle": (0, (5, 2))}
 
 
 class Chord(NamedTuple):
-    """Of a curve: its ends in the units of the axes, and the verdict with what it was made of."""
+    """Shape of a curve: its ends in the units of the axes, and the verdict with what it was made of."""
 
     end: float
     low: float
@@ -53,7 +53,7 @@ class ShapeFigure:
         return cls(family, chosen, looks, len(found) - len(chosen)) if chosen else None
 
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
-        """The figure, with matplotlib's settings as they are."""
+        """Return the figure, with matplotlib's settings as they are."""
         told = part_told(len(self.chosen), len(self.chosen) + self.left_out, "curves")
         sheet = Sheet.blank(len(self.chosen), heading, told)
         settings = [(*curve.panel, *([curve.member] if curve.member else [])) for curve, _ in self.chosen]
@@ -86,7 +86,7 @@ class ShapeFigure:
 
 
 def chord_of(curve: CurveData, curves: pd.DataFrame, speed: str) -> Chord | None:
-    """The chord that a curve's shape was judged against; None without a verdict. speed: the column along the axis."""
+    """Chord that a curve's shape was judged against; None without a verdict. speed: the column along the axis."""
     found = curve.rows_in(curves, CURVES)
     if len(found) != 1 or found["shape"].isna().any():
         return None

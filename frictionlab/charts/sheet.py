@@ -26,7 +26,7 @@ COLUMN, PAGE = (millimetres / 25.4 for millimetres in WIDTHS.values())
 """Widths of a journal's column and page [inch]."""
 _FILE = mpl.rc_params_from_file(Path(__file__).with_name("frictionlab.mplstyle"), use_default_template=False)
 STYLE: Any = {name: value for name, value in _FILE.items() if name != "axes.prop_cycle"}
-"""Of ``plt.style.use("frictionlab.charts.frictionlab")``, too, but for the looks of lines."""
+"""Settings of ``plt.style.use("frictionlab.charts.frictionlab")`` without the looks of lines."""
 CYCLE: list[dict[str, Any]] = list(_FILE["axes.prop_cycle"])
 """Colour and dashes of the first curve, the second, ..."""
 _SAVED: dict[str, Any] = {
@@ -76,7 +76,7 @@ PICTURE_SHARE = 0.8  # of the room of a picture, about, that is inside its axes
 
 
 class Heading(NamedTuple):
-    """What stands above the pictures of a figure, and the width that it is to have, as it needs where left out.
+    """Title above the pictures of a figure, and the width that it is to have; as it needs where left out.
 
     finds: whether it says what was found, rather than what is shown. into: axes of somebody's own figure, which then
     keeps its size and has no title from here.
@@ -148,12 +148,12 @@ class Sheet(NamedTuple):
 
     @property
     def picture_width(self) -> float:
-        """Of the inside of a picture, about [point]."""
+        """Estimate the width of the inside of a picture [point]."""
         share = PICTURE_SHARE / self.wide if self.own is None else float(self.own.get_position().width)
         return share * 72 * self.figure.get_figwidth()
 
     def label_once(self, pictures: Sequence[Axes]) -> None:
-        """Of equal labels under each other, and side by side, only the lowest and the first are left."""
+        """Leave, of equal labels under each other or side by side, only the lowest and the first."""
         for at, axes in enumerate(pictures):
             below = at + self.wide
             if below < len(pictures) and pictures[below].get_xlabel() == axes.get_xlabel():
@@ -163,7 +163,7 @@ class Sheet(NamedTuple):
 
 
 def abreast(pictures: int, heading: Heading) -> int:
-    """How many pictures stand side by side."""
+    """Return how many pictures stand side by side."""
     return 1 if heading.width == "single" else min(2, pictures)
 
 
@@ -205,7 +205,7 @@ def _add_legend(figure: Figure, entries: Sequence[Any], title: str | None) -> in
 
 
 def text_width(figure: Figure | SubFigure, text: str, size: float) -> float:
-    """Of a line of text in a font of this size [point]."""
+    """Estimate the width of a line of text in a font of this size [point]."""
     drawn = figure.text(0.0, 0.0, text, fontsize=size)
     pixels = drawn.get_window_extent().width
     drawn.remove()

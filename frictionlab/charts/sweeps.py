@@ -1,4 +1,4 @@
-"""What is swept in a result table: the inputs, the one along the axis, and how their values are written."""
+"""Swept values of a result table: the inputs, the one along the axis, and how their values are written."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class SweptValue(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The value alone, with its unit."""
+        """Return the value alone, with its unit."""
         if isinstance(self.value, str):
             return shortened(self.value, LONGEST_LABEL)
         return "" if self.value is None else f"{self.value:.5g} {unit_shown(self.name)}".rstrip()
@@ -55,14 +55,14 @@ class SweptValue(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """The title of a picture: what is the same along its curves."""
+        """Return the title of a picture: what is the same along its curves."""
         if self.name == "law":
             return self.text
         return f"no {quantity(self.name)}" if self.value is None else f"{quantity(self.name)} = {self.text}"
 
 
 def headings(pictures: Sequence[Sequence[SweptValue]]) -> list[str]:
-    """What is the same in each picture: every name in words once, then as its symbol."""
+    """Return what is the same in each picture: every name in words once, then as its symbol."""
     told: set[str] = set()
     found = []
     for values in pictures:
@@ -72,7 +72,7 @@ def headings(pictures: Sequence[Sequence[SweptValue]]) -> list[str]:
 
 
 class Sweep(NamedTuple):
-    """What is swept in a table, those of the fewest values first: all inputs, and those that are numbers.
+    """Swept inputs of a table, those of the fewest values first: all inputs, and those that are numbers.
 
     along: the number along the axis of figures, None where none is swept.
     """
@@ -141,7 +141,7 @@ def some_of(values: Sequence[T], most: int) -> list[T]:
 
 
 def is_logarithmic(values: NDArray[np.float64]) -> bool:
-    """Whether the distinct values are spaced evenly in their logarithms rather than in themselves."""
+    """Check whether the distinct values are spaced evenly in their logarithms rather than in themselves."""
     steps = np.unique(values[np.isfinite(values)])
     if len(steps) < 3 or steps[0] <= 0 or steps[-1] < 5 * steps[0]:
         return False

@@ -1,4 +1,4 @@
-"""The command line. Nothing heavy is imported before a command needs it: ``--help`` answers at once."""
+"""Command line. Nothing heavy is imported before a command needs it: ``--help`` answers at once."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ COMMANDS = (
 )
 """Each is the function ``NAME_command`` of the module of its name."""
 OUT_OF_REACH = {errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ELOOP}
-"""What is wrong with a path that somebody gave, not with frictionlab."""
+"""Errors of a path that somebody gave, not of frictionlab."""
 MOMENT = 0.2
 """Seconds in which the threads of an interrupted command may end."""
 
@@ -76,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _works_on(earlier: Collection[threading.Thread]) -> bool:
-    """Whether a thread goes on that is none of these; those about to end get a moment."""
+    """Check whether a thread goes on that is none of these; those about to end get a moment."""
     until = time.monotonic() + MOMENT
     with suppress(KeyboardInterrupt):  # a second one: no more waiting
         while time.monotonic() < until and not set(threading.enumerate()).issubset(earlier):
@@ -108,7 +108,7 @@ def _report(problem: BaseException) -> int:
 
 
 def _diagnose(problem: BaseException) -> tuple[int, str]:
-    """The exit code and the message of an error: the study's, the disk's, a plugin's or our own."""
+    """Return the exit code and the message of an error: the study's, the disk's, a plugin's or our own."""
     from frictionlab.laws.faults import BrokenPlugin, failing_law
     from frictionlab.runner.files import FolderError, NoScheduler, SaveError
     from frictionlab.values.notes import StudyError
@@ -135,11 +135,11 @@ class CommandGroup(click.Group):
     """A group that imports the module of a command when the command is asked for."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The names of all commands, sorted."""
+        """Return the names of all commands, sorted."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of a name; None where there is none."""
+        """Return the command of a name; None where there is none."""
         if cmd_name not in COMMANDS:
             return None
         return _command(cmd_name)
@@ -147,7 +147,7 @@ class CommandGroup(click.Group):
 
 @cache
 def _command(name: str) -> click.Command:
-    """The command of this name, all of whose output but the result goes to stderr."""
+    """Return the command of this name, all of whose output but the result goes to stderr."""
     command: click.Command = getattr(import_module(f"frictionlab.cli.{name}"), f"{name}_command")
     assert command.callback is not None
     command.callback = results_apart()(command.callback)

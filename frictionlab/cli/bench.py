@@ -44,7 +44,7 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
     start = last = time.monotonic()
 
     def tell(what: str) -> None:
-        """What is measured now, and the time left if parts take as long as those before."""
+        """Tell what is measured now, and the time left if parts take as long as those before."""
         left = (last - start) * len(asked.names) / len(done) - (time.monotonic() - start) if done else 0.0
         print_message(f"{what}, about {spoken(left)} left" if left > 0.5 else what)
 

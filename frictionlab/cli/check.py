@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def at_measured(jobs: list[Job]) -> list[Job]:
-    """The jobs, those with measurements at their points. Raises CommandError."""
+    """Return the jobs, those with measurements at their points. Raises CommandError."""
     if all(job.study.data is None for job in jobs):
         return jobs
     from frictionlab.analysis.fit.api import at_measured_points
@@ -86,7 +86,7 @@ def check_command(
 
 
 def _planned_lines(name: str, planned: Sequence[Planned], unit: ShownUnit | None) -> list[str]:
-    """What a study will take. unit: of its belt speeds, where they were written with one."""
+    """Return what a study will take. unit: of its belt speeds, where they were written with one."""
     lines = [name]
     for entry in planned:
         about = "about " if entry.about else ""

@@ -61,7 +61,7 @@ def _watch(told: int, noticed: threading.Event) -> None:
 
 
 def _once_more(hook: Callable[[Any], object]) -> Callable[[Any], None]:
-    """Where a callback has lost an interrupt, interrupt once more; the hook is for everything else."""
+    """Return where a callback has lost an interrupt, interrupt once more; the hook is for everything else."""
 
     def hear(lost: Any) -> None:
         if not issubclass(lost.exc_type, KeyboardInterrupt):

@@ -68,7 +68,7 @@ def _print_broken(known: Laws) -> int:
 
 
 class TestOptions(NamedTuple):
-    """The options of ``laws test``."""
+    """Options of ``laws test``."""
 
     as_json: bool
     markdown: bool
@@ -76,7 +76,7 @@ class TestOptions(NamedTuple):
 
 
 def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
-    """The laws of the files given, else every law, broken ones too; one of two names of the same law."""
+    """Return the laws of the files given, else every law, broken ones too; one of two names of the same law."""
     from frictionlab.study import registry
 
     others = {name for own in known.aliases().values() for name in own}

@@ -67,7 +67,7 @@ def needs_command(
 
 
 def _lines(found: Sequence[Needs]) -> list[str]:
-    """What holds for every curve, but for its numbers, then what is left of each below what tells it apart."""
+    """Return what holds for every curve, but for its numbers, then what is left of each below what tells it apart."""
     from frictionlab.runner.summary import alike
 
     if len(found) == 1:
@@ -92,7 +92,7 @@ def _form(line: str) -> tuple[str, str]:
 
 
 def _write(table: DataFrame, title: str, out: Path) -> None:
-    """The table and its figure into a folder. Raises SaveError."""
+    """Write the table and its figure into a folder. Raises SaveError."""
     from frictionlab.charts.needs import draw_needs  # with matplotlib, which takes a second
     from frictionlab.runner.files import SaveError, write_whole
 

@@ -1,4 +1,4 @@
-"""The options that several commands share."""
+"""Options that several commands share."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ class _Place(click.Path):
     """A path that is given: an empty one, of a shell variable without a value, would be the folder one is in."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path. Raises BadParameter."""
+        """Return the path. Raises BadParameter."""
         if value == "":
             self.fail("the path is empty", param, ctx)
         return super().convert(value, param, ctx)
 
 
 PATH = _Place(path_type=Path)
-"""The type of arguments that are paths."""
+"""Type of arguments that are paths."""
 overrides = click.option(
     "--set",
     "overrides",
@@ -53,7 +53,7 @@ as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of 
 
 
 def folder(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """The option ``-o``, the folder that a command writes to."""
+    """Return the option ``-o``, the folder that a command writes to."""
     help_text = f"Where to; {default} if left out."
     return click.option("-o", "out", type=PATH, metavar="DIR", help=help_text)
 

@@ -1,4 +1,4 @@
-"""What a command prints, and how it ends: results on stdout, everything else on stderr, an exit code."""
+"""Output of a command, and its end: results on stdout, everything else on stderr, an exit code."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def open_streams() -> None:
 
 
 _apart: list[TextIO] = []
-"""The stream of results while a command runs; empty before and after."""
+"""Stream of results while a command runs; empty before and after."""
 
 
 @contextmanager
@@ -89,7 +89,7 @@ def _results() -> TextIO:
 
 
 _meters: list[Meter] = []
-"""What tells progress at this moment, if anything."""
+"""Meters that tell progress at this moment; one at most."""
 
 
 @contextmanager
@@ -127,7 +127,7 @@ def print_result(text: str) -> None:
 
 
 def _wrapped(text: str) -> str:
-    """The text with its lines broken between words where a terminal would break them anywhere."""
+    """Return the text with its lines broken between words where a terminal would break them anywhere."""
     if not _results().isatty():
         return text
     width = shutil.get_terminal_size().columns

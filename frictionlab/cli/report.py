@@ -41,7 +41,7 @@ def report_command(run: Path, figures: bool) -> None:
 
 
 def drawn_anew(run: Path, figures: bool) -> None:
-    """The figures of a run, and its report unless they alone are asked for."""
+    """Write the figures of a run, and its report unless they alone are asked for."""
     from frictionlab.report.run import figure_data
     from frictionlab.runner.files import alone_in
     from frictionlab.runner.saved import read_run

@@ -51,7 +51,7 @@ def _one_of_so_many(
 
 
 class RunOptions(NamedTuple):
-    """The options of ``run``."""
+    """Options of ``run``."""
 
     study: Path
     out: Path | None
@@ -84,12 +84,12 @@ class RunOptions(NamedTuple):
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """The overrides, with the columns as one of them."""
+        """Return the overrides, with the columns as one of them."""
         return self.overrides if self.columns is None else (*self.overrides, f"columns=[{self.columns}]")
 
     @property
     def existing(self) -> Literal["reuse", "replace"]:
-        """What becomes of results already in the folder."""
+        """Return what becomes of results already in the folder."""
         return "replace" if self.force else "reuse"
 
 
@@ -265,7 +265,7 @@ def _show(result: Results) -> None:
 
 
 def _show_failed(result: Results) -> None:
-    """The expectations that failed, on stderr: stdout belongs to the records."""
+    """Print the expectations that failed, on stderr: stdout belongs to the records."""
     from frictionlab.runner.summary import failed_lines
 
     for line in failed_lines(result.verdicts):
@@ -303,7 +303,7 @@ def _cite(done: Sequence[Results]) -> None:
 
 
 def _rows(job: Job, result: Results, asked: RunOptions) -> list[dict[str, Any]]:
-    """The records of a run; of a folder of studies, each names its study."""
+    """Return the records of a run; of a folder of studies, each names its study."""
     from frictionlab.runner.table import records
 
     whose = {"study": job.name} if asked.study.is_dir() else {}

@@ -29,7 +29,7 @@ _config: Any = numba.config
 
 NUMBER, VECTOR, INDEX, TRUTH = _types.float64, _types.complex128, _types.int64, _types.boolean
 NUMBERS, VECTORS = _types.CPointer(NUMBER), _types.CPointer(VECTOR)
-"""What functions take and return: on the line a number, in the plane a vector; pointers to several of them."""
+"""Types that functions take and return: on the line a number, in the plane a vector; pointers to several of them."""
 _BYTES = _ir.IntType(8).as_pointer()
 _ADDRESS = _ir.IntType(64)
 
@@ -56,7 +56,7 @@ def _written_to(typing: Any, thing: Any, room: Any) -> Any:
 
 
 def _unowned(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """The value, its arrays without the count of their users: numba drops that when the call ends, arrays stay."""
+    """Value, its arrays without the count of their users: numba drops that when the call ends, arrays stay."""
     if isinstance(kind, _types.Array):
         array = _arrays.make_array(kind)(context, builder, value)
         array.meminfo = _cgutils.get_null_value(array.meminfo.type)
@@ -154,7 +154,7 @@ def _unpacking(context: Any, builder: Any, compiled: Any, returns: Any) -> Any:
 
 
 def _shape(context: Any, interface: Interface) -> Any:
-    """The machine's signature: the arguments, then the place of the thing."""
+    """Return the machine's signature: the arguments, then the place of the thing."""
     kinds = [context.get_value_type(kind) for kind in interface.takes]
     return _ir.FunctionType(context.get_value_type(interface.returns), [*kinds, _BYTES])
 
@@ -212,7 +212,7 @@ def _called(context: Any, builder: Any, interface: Interface, address: Any, plac
 
 
 def _as_taken(context: Any, builder: Any, interface: Interface, kinds: Any, given: Any) -> list[Any]:
-    """The values of a tuple as a function takes them; of an array its items, where it takes a pointer."""
+    """Return the values of a tuple as a function takes them; of an array its items, where it takes a pointer."""
     values = []
     for value, kind, taken in zip(_cgutils.unpack_tuple(builder, given), kinds, interface.takes, strict=True):
         if isinstance(kind, _types.Array) and isinstance(taken, _types.CPointer):

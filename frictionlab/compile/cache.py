@@ -77,11 +77,11 @@ def pause_collection() -> None:
 
 _Context: Any = numba.core.runtime.context.NRTContext  # internals of numba, untyped
 _holds: dict[Any, bool] = {}
-"""Of numba's types of values: whether there is an array inside."""
+"""Types of numba's values, with whether there is an array inside."""
 
 
 def _arrays_in(context: Any, builder: Any, kind: Any, value: Any) -> list[Any]:
-    """The type and the address of what counts the users of each array inside a value."""
+    """Return the type and the address of what counts the users of each array inside a value."""
     models = context._context.data_model_manager
     model = models[kind]
     found = [(kind, model.get_nrt_meminfo(builder, value))] if model.has_nrt_meminfo() else []
@@ -116,7 +116,7 @@ _one_at_a_time = threading.Lock()
 
 
 class Compiled(NamedTuple):
-    """The disk-cached entry of a kernel, called like a function; bound: the numbers of the law, filled in already.
+    """Disk-cached entry of a kernel, called like a function; bound: the numbers of the law, filled in already.
 
     Raises CannotCompile, when called, where numba cannot compile the law's methods.
     """
@@ -126,7 +126,7 @@ class Compiled(NamedTuple):
     bound: tuple[Any, ...]
 
     def __call__(self, *arguments: Any) -> Any:
-        """What the kernel returns."""
+        """Return what the kernel returns."""
         try:
             return self.entry(*self.bound, *arguments)
         except (NumbaError, UnsupportedBytecodeError) as problem:
@@ -141,14 +141,14 @@ class Compiled(NamedTuple):
             self.entry.compile(self._signature(arguments))
 
     def is_kept(self, *arguments: Any) -> bool:
-        """Whether there is machine code for arguments like these, in this process or on disk."""
+        """Check whether there is machine code for arguments like these, in this process or on disk."""
         signature = self._signature(arguments)
         return signature in self.entry.overloads or self.entry._cache.has(
             signature, self.entry.targetctx.codegen()
         )
 
     def is_kept_at_all(self) -> bool:
-        """Whether there is machine code for any arguments."""
+        """Check whether there is machine code for any arguments."""
         return bool(self.entry.overloads) or self.entry._cache.has_any()
 
     def _signature(self, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -156,7 +156,7 @@ class Compiled(NamedTuple):
 
 
 def compiled(kernel: Any, law: KernelLaw | FrictionLaw | None = None) -> Any:
-    """The entry of a kernel, its first argument the law where there is one: by itself where it is not told how.
+    """Entry of a kernel, its first argument the law where there is one: by itself where it is not told how.
 
     Where numba is told to compile nothing, the kernel itself.
     """
@@ -180,7 +180,7 @@ def _entry_of(kernel: Any, law: KernelLaw | None) -> Any:
 
 @cache
 def _entry(kernel: Any, law: KnownLaw | None, fields: tuple[str, ...]) -> tuple[Any, Any]:
-    """The compiled entry and the type of the law's numbers (None without a law)."""
+    """Return the compiled entry and the type of the law's numbers (None without a law)."""
     structure = () if law is None else law.structure
     parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
     source = (
@@ -206,7 +206,7 @@ def _entry(kernel: Any, law: KnownLaw | None, fields: tuple[str, ...]) -> tuple[
 
 @cache
 def _numbers(law: KnownLaw, fields: tuple[str, ...]) -> Any:
-    """The type of a law's numbers, one for all entries: what they share is compiled once in a process."""
+    """Return the type of a law's numbers, one for all entries: what they share is compiled once in a process."""
     source = (
         "from typing import NamedTuple\n\n\n"
         f"# {', '.join(law.structure)}\n"
@@ -222,7 +222,7 @@ def _numbers(law: KnownLaw, fields: tuple[str, ...]) -> Any:
 
 
 def _module(name: str, source: str, **given: Any) -> ModuleType:
-    """The module of this content, some names given before it runs; machine code refers to it by name."""
+    """Return the module of this content, some names given before it runs; machine code refers to it by name."""
     module = ModuleType(name)
     vars(module).update(given)
     sys.modules[name] = module
@@ -311,7 +311,7 @@ def _pieces_of_bytecode(code: CodeType) -> Iterator[str]:
 
 
 def _constants(code: CodeType) -> tuple[Any, ...]:
-    """The constants of a function without its docstring, which changes nothing that it computes."""
+    """Return the constants of a function without its docstring, which changes nothing that it computes."""
     has_docstring = 0x4000000  # the flag of Python 3.13; before, None stands for a docstring that is missing
     named = code.co_flags & has_docstring if sys.version_info >= (3, 13) else not code.co_name.startswith("<")
     documented = bool(named) and isinstance(code.co_consts[0], str)
@@ -319,7 +319,7 @@ def _constants(code: CodeType) -> tuple[Any, ...]:
 
 
 def _globals_used(function: FunctionType) -> Iterator[Any]:
-    """The globals a function names, and what it takes from the modules among them, packages included."""
+    """Yield the globals a function names, and what it takes from the modules among them, packages included."""
     names = list(names_used(function.__code__))
     waiting = [function.__globals__[name] for name in names if name in function.__globals__]
     opened: set[int] = set()

@@ -29,7 +29,7 @@ PYTHON_IN_A_TRIAL = 0.5
 
 
 class _Choice:
-    """What the environment asks for: FRICTIONLAB_COMPILE=always, that Python runs no kernel."""
+    """Request of the environment, FRICTIONLAB_COMPILE=always: that Python runs no kernel."""
 
     always_compile = os.environ.get("FRICTIONLAB_COMPILE") == "always"
 
@@ -129,11 +129,11 @@ class KernelCall:
         self.kernel, self.law = kernel, law
 
     def __call__(self, *arguments: Any) -> Any:
-        """What the kernel returns."""
+        """Return what the kernel returns."""
         return self.timed(*arguments)[0]
 
     def timed(self, *arguments: Any) -> tuple[Any, float]:
-        """What the kernel returns, and the seconds it took, compiling left out."""
+        """Return what the kernel returns, and the seconds it took, compiling left out."""
         key = self.key(arguments)
         if key not in _ready:
             found = None if self._is_for_machine(key, arguments) else self._limited(key, arguments)
@@ -153,16 +153,16 @@ class KernelCall:
         return str(self.kernel.__name__.replace("_", " "))
 
     def key(self, arguments: tuple[Any, ...]) -> Any:
-        """The kernel and the kinds of its arguments."""
+        """Return the kernel and the kinds of its arguments."""
         law = self.law and (type(self.law), self.law.structure())
         return self.kernel, law, _kind(arguments)
 
     def entry(self, arguments: tuple[Any, ...]) -> Compiled:
-        """The machine code, for arguments like these."""
+        """Return the machine code, for arguments like these."""
         return compiled(self.kernel, self.law and by_address(self.law, _is_planar(arguments)))
 
     def not_kept(self, arguments: tuple[Any, ...]) -> frozenset[str]:
-        """The names of the entries to compile for arguments like these: no machine code is in memory or on disk."""
+        """Names of the entries to compile for arguments like these: no machine code is in memory or on disk."""
         entry = compiled(self.kernel, self.law and without_addresses(self.law))
         made = [each for each in arguments if isinstance(each, MadeByKernel)]
         # a kernel that others make arguments of is compiled once, whatever they make
@@ -172,7 +172,7 @@ class KernelCall:
         return own.union(*(each.not_kept() for each in made))
 
     def by_python(self, *arguments: Any) -> Any:
-        """What the kernel returns where Python runs it."""
+        """Return what the kernel returns where Python runs it."""
         given = [each.for_python if isinstance(each, MadeByKernel) else each for each in arguments]
         return interpreted(self.kernel)(*((self.law, *given) if self.law else given))
 
@@ -191,7 +191,7 @@ class KernelCall:
         add_to_compiling(time.perf_counter() - start)
 
     def _limited(self, key: Any, arguments: tuple[Any, ...]) -> tuple[Any, float] | None:
-        """The same where Python comes to an end in time; else None, and nothing is written."""
+        """Return the same where Python comes to an end in time; else None, and nothing is written."""
         if self.law is not None and from_outside(type(self.law)):
             # what numba cannot compile in a law of others is told whatever Python can do
             by_address(self.law, _is_planar(arguments))
@@ -214,14 +214,14 @@ def _for_machine(value: Any) -> Any:
 
 
 def _is_planar(value: Any) -> bool:
-    """Whether a number of the plane is among the arguments, records opened."""
+    """Check whether a number of the plane is among the arguments, records opened."""
     if isinstance(value, tuple):
         return any(map(_is_planar, value))
     return isinstance(value, complex) or (isinstance(value, np.ndarray) and value.dtype.kind == "c")
 
 
 def _kind(value: Any) -> Any:
-    """What numba tells arguments apart by, found in microseconds."""
+    """Return what numba tells arguments apart by, found in microseconds."""
     if isinstance(value, np.ndarray):
         return value.dtype.char, value.ndim, value.flags.c_contiguous, value.flags.writeable
     if isinstance(value, tuple):

@@ -1,4 +1,4 @@
-"""How kernels are compiled: the only options ever given to numba.
+"""Compiling of kernels: the only options ever given to numba.
 
 The names that a function's code uses.
 
@@ -38,7 +38,7 @@ def names_used(code: CodeType) -> Iterator[str]:
 _Library: Any = numba.core.codegen.JITCodeLibrary  # internals of numba, untyped
 _Compiler: Any = numba.core.compiler.Compiler
 SMALL_PART = 10
-"""Of a function with all it calls [functions]: up to here they are linked and optimised by themselves."""
+"""Size of a function with all it calls [functions] up to which they are linked and optimised by themselves."""
 OF_OTHERS = 3
 """Functions that a library of numba's own counts for."""
 
@@ -63,7 +63,7 @@ class _Part(_Library):  # type: ignore[misc]
         self._finalized = True
 
     def own_module(self) -> Any:
-        """The function, without what it reaches."""
+        """Return the function, without what it reaches."""
         return super()._get_module_for_linking()
 
     def _get_module_for_linking(self) -> Any:
@@ -107,7 +107,7 @@ def link(module: Any, libraries: Sequence[Any]) -> None:
 
 
 def callers_first(libraries: list[Any]) -> list[Any]:
-    """The libraries and all that they reach, each once and before what it calls.
+    """Return the libraries and all that they reach, each once and before what it calls.
 
     The linker drops a function that nothing refers to yet.
     """
@@ -147,7 +147,7 @@ def _known() -> bool:
 
 PARTS: dict[str, Any] = {"pipeline_class": _OfParts} if _known() else {}
 ENTRIES: dict[str, Any] = {"pipeline_class": _OfEntries} if _known() else {}
-"""How numba is told so; empty where its library of code is not the one of numba 0.60 to 0.68."""
+"""Options that tell numba so; empty where its library of code is not the one of numba 0.60 to 0.68."""
 
 
 def _without_callbacks() -> None:
@@ -185,7 +185,7 @@ def njit(function: Callable[..., Any]) -> Any:
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """The same for a function only other kernels call: it compiles faster, having no entry from Python.
+    """Return the same for a function only other kernels call: it compiles faster, having no entry from Python.
 
     Never call one from Python: nothing stands in the way of the crash.
     """
@@ -201,7 +201,7 @@ def inlined(function: Callable[..., Any]) -> Any:
 
 
 def fast(function: Callable[..., Any]) -> Any:
-    """The same for inner arithmetic that never meets NaN or infinity on purpose."""
+    """Return the same for inner arithmetic that never meets NaN or infinity on purpose."""
     return _compiled(function, fastmath=True, **INNER)
 
 

@@ -1,4 +1,4 @@
-"""How kernels see a law: compiled, it is a named tuple of its numbers whose type leads numba to its methods.
+"""Laws as kernels see them: compiled, it is a named tuple of its numbers whose type leads numba to its methods.
 
 A kernel takes a law as its first argument and calls its methods, ``law.sliding_vector(v)``. Interpreted, that is
 the law itself. A kernel with several bodies is chosen here too, by dimension or by the kind of law.
@@ -45,7 +45,7 @@ class KernelLaw(NamedTuple):
 
 
 def by_itself(law: FrictionLaw) -> KernelLaw:
-    """The law with its own methods: a kernel is compiled for it alone."""
+    """Return the law with its own methods: a kernel is compiled for it alone."""
     return KernelLaw(law, KnownLaw(type(law), law.structure()), dict(law.numbers()))
 
 
@@ -54,7 +54,7 @@ _templates: Any = numba.core.typing.templates
 
 
 class KnownLaw(NamedTuple):
-    """What the type of a law's numbers says of it: the class whose methods kernels call, and its structure.
+    """Facts that the type of a law's numbers holds: the class whose methods kernels call, and its structure.
 
     by_address: whether the numbers hold the addresses of the methods, and the class is only their interface.
     """
@@ -82,7 +82,7 @@ class KernelMethod(NamedTuple):
 
     @property
     def planar(self) -> bool:
-        """Whether it is another function in the plane."""
+        """Check whether it is another function in the plane."""
         return bool({"v", "m"} & {*self.takes, self.returns})
 
     def types(self, planar: bool) -> Interface:
@@ -93,7 +93,7 @@ class KernelMethod(NamedTuple):
         return Interface(tuple(of_letters[letter] for letter in self.takes), of_letters[self.returns])
 
     def by_address(self) -> Any:
-        """What kernels call where the law's numbers hold the address."""
+        """Return what kernels call where the law's numbers hold the address."""
         parameters = ", ".join(inspect.signature(getattr(self.interface, self.name)).parameters)
         law, _, given = parameters.partition(", ")
         if not self.takes:
@@ -329,12 +329,12 @@ def by_law(of_sliding: Any, of_bristle: Any, of_deflections: Any = None, of_scal
 
 
 def by_scalars(of_others: Any, of_scalars: Any) -> Any:
-    """The same, chosen by whether what the law remembers has no direction."""
+    """Return the same, chosen by whether what the law remembers has no direction."""
     return by_law(of_others, of_others, of_others, of_scalars)
 
 
 def _numbers_in(first: Any) -> Any:
-    """The type of a law's numbers: that of the argument, or of its field ``law``."""
+    """Return the type of a law's numbers: that of the argument, or of its field ``law``."""
     if first.instance_class in law_of_numbers:
         return first
     return first.types[first.fields.index("law")]
@@ -352,7 +352,7 @@ length = by_dimension(lambda v: math.fabs(v), lambda v: math.sqrt(v.real * v.rea
 
 @cache
 def compilable(function: FunctionType) -> FunctionType:
-    """The function with the plain helpers it names compiled too, and ``abs`` quick: laws do not know numba."""
+    """Return the function with the plain helpers it names compiled too, and ``abs`` quick: laws do not know numba."""
     names = {
         name
         for name in names_used(function.__code__)

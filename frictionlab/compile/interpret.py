@@ -31,7 +31,7 @@ def run_as(intrinsic: Any, body: Callable[..., Any]) -> Any:
 
 
 def run_on_arrays_as(intrinsic: Any, body: Callable[..., Any]) -> Any:
-    """The same for texts that Python runs on arrays."""
+    """Return the same for texts that Python runs on arrays."""
     _OF_ARRAYS.instead[id(intrinsic)] = intrinsic, body
     return intrinsic
 
@@ -77,7 +77,7 @@ def interpreted(kernel: Any) -> Any:
 
 @functools.cache
 def interpreted_on_arrays(kernel: Any) -> Any:
-    """The same for numbers that are planar and arrays of any length."""
+    """Return the same for numbers that are planar and arrays of any length."""
     with _building:
         return _OF_ARRAYS.read(kernel)
 
@@ -86,7 +86,7 @@ _building = threading.RLock()
 
 
 class _Reader:
-    """The twins of kernel functions: the same text, every name standing for what Python is to run.
+    """Twins of kernel functions: the same text, every name standing for what Python is to run.
 
     instead: what Python runs in place of what numba alone can, each beside that. builtins, math: what those names
     stand for.
@@ -98,7 +98,7 @@ class _Reader:
         self.twins: dict[int, tuple[Any, Any]] = {}
 
     def read(self, kernel: Any) -> Any:
-        """What stands for a kernel function, or for anything else that a name may stand for."""
+        """Return what stands for a kernel function, or for anything else that a name may stand for."""
         if id(kernel) in self.instead:
             return self.instead[id(kernel)][1]
         function = getattr(kernel, "py_func", kernel)
@@ -132,7 +132,7 @@ class _Reader:
         return twin
 
     def _seen_in(self, function: FunctionType, value: Any) -> Any:
-        """What a name stands for in the twin of a function: of our modules, what it takes from them."""
+        """Return what a name stands for in the twin of a function: of our modules, what it takes from them."""
         if value is math:
             return self.math
         if not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in FOREIGN:
@@ -145,7 +145,7 @@ class _ArrayReader(_Reader):
     """Twins whose numbers are planar and arrays."""
 
     def read(self, kernel: Any) -> Any:
-        """Of a function with a body for lanes, that."""
+        """Return that body for lanes of a function that has one."""
         return super().read(getattr(kernel, "of_lanes", kernel))
 
 

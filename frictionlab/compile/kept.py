@@ -40,7 +40,7 @@ _warned: set[str] = set()
 
 
 def cache_folder() -> Path | None:
-    """Where compiled entries are kept: $FRICTIONLAB_CACHE, else the user's cache folder; None without a home."""
+    """Return the folder of compiled entries: $FRICTIONLAB_CACHE, else in the user's cache; None without a home."""
     if chosen := os.environ.get("FRICTIONLAB_CACHE"):
         return Path(chosen)
     if base := os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA"):
@@ -51,7 +51,7 @@ def cache_folder() -> Path | None:
 
 
 class KeptEntry(_Cache):  # type: ignore[misc]
-    """The machine code of one entry: numba asks for it before it compiles, and hands it over afterwards."""
+    """Machine code of one entry: numba asks for it before it compiles, and hands it over afterwards."""
 
     cache_path = None
 
@@ -59,7 +59,7 @@ class KeptEntry(_Cache):  # type: ignore[misc]
         self._name = name
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """What was kept for this signature; None where nothing sound is."""
+        """Return what was kept for this signature; None where nothing sound is."""
         context.refresh()
         found = self._found(signature, context)
         if found is None:
@@ -96,7 +96,7 @@ class KeptEntry(_Cache):  # type: ignore[misc]
             )
 
     def has_any(self) -> bool:
-        """Whether there is a file for some signature, sound or not."""
+        """Check whether there is a file for some signature, sound or not."""
         folder = cache_folder()
         return folder is not None and any(folder.glob(f"{self._name}_*{SUFFIX}"))
 
@@ -129,7 +129,7 @@ class KeptEntry(_Cache):  # type: ignore[misc]
             lock.release()
 
     def has(self, signature: Any, codegen: Any) -> bool:
-        """Whether there is a file for this signature, sound or not."""
+        """Check whether there is a file for this signature, sound or not."""
         path = self._path(signature, codegen)
         return path is not None and path.exists()
 
@@ -154,7 +154,7 @@ def _fault(problem: Exception) -> str:
 
 
 def _about(signature: Any) -> str:
-    """The types of the arguments, records told apart by their homes: numba names them by their last names alone."""
+    """Types of the arguments, records told apart by their homes: numba names them by their last names alone."""
     return "; ".join(_type_name(each) for each in signature)
 
 
@@ -167,7 +167,7 @@ def _type_name(kind: Any) -> str:
 
 
 def _read(path: Path, about: str) -> Any:
-    """What the file holds; None without a file. Raises _Damaged, OSError, or what a reader of pickles raises."""
+    """Read the file; None without one. Raises _Damaged, OSError, or what a reader of pickles raises."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:

@@ -76,7 +76,7 @@ class Parts(NamedTuple):
 
 
 def spread(builder: Any, number: Any) -> Any:
-    """The vector with one float in every lane."""
+    """Return the vector with one float in every lane."""
     place = _ir.Constant(_ir.IntType(32), 0)
     first = builder.insert_element(_ir.Constant(VECTOR, _ir.Undefined), number, place)
     zeros = _ir.Constant(_ir.VectorType(_ir.IntType(32), LANE_COUNT), [0] * LANE_COUNT)
@@ -84,7 +84,7 @@ def spread(builder: Any, number: Any) -> Any:
 
 
 def taken_apart(context: Any, builder: Any, kind: Any, value: Any) -> Parts:
-    """The parts of a value of any kind of number."""
+    """Return the parts of a value of any kind of number."""
     if isinstance(kind, LaneType):
         if not kind.planar:
             return Parts(value, None)
@@ -96,7 +96,7 @@ def taken_apart(context: Any, builder: Any, kind: Any, value: Any) -> Parts:
 
 
 def put_together(builder: Any, parts: Parts) -> Any:
-    """The value with these parts."""
+    """Return the value with these parts."""
     if parts.im is None:
         return parts.re
     pair = _ir.Constant(_ir.LiteralStructType([VECTOR, VECTOR]), _ir.Undefined)

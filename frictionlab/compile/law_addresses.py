@@ -35,7 +35,7 @@ ONLY_WITH = {"breakaway": "stick"}
 
 @lru_cache(maxsize=256)
 def by_address(law: FrictionLaw, planar: bool) -> KernelLaw:
-    """The law as kernels for all laws of its kind see it. Raises CannotCompile.
+    """Return the law as kernels for all laws of its kind see it. Raises CannotCompile.
 
     planar: whether its methods are called in the plane as well as on the line.
     """
@@ -49,7 +49,7 @@ def by_address(law: FrictionLaw, planar: bool) -> KernelLaw:
 
 
 def without_addresses(law: FrictionLaw) -> KernelLaw:
-    """The same with numbers of the same types, and nothing compiled."""
+    """Return the same with numbers of the same types, and nothing compiled."""
     interface = _interface(law)
     numbers: dict[str, Any] = {"place": 0} | {
         f"{part}_{each.name}": 0 for each in _called(law) for part in ("line", "plane")
@@ -102,7 +102,7 @@ def _number(value: Any) -> float | int:
 
 
 def _body(name: str, numbers: Any) -> Any:
-    """The method of the law whose numbers are of this type."""
+    """Return the method of the law whose numbers are of this type."""
     return compilable(getattr(law_of_numbers[numbers.instance_class].kind, name))
 
 

@@ -1,4 +1,4 @@
-"""What is compiled at this moment and what has been, for those who wait. Imports nothing, so that asking is free."""
+"""Kernels compiled at this moment and before, for those who wait. Imports nothing, so that asking is free."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 compiled_here: list[str] = []
-"""The kernels that this process has compiled, by the names they are kept under."""
+"""Kernels that this process has compiled, by the names they are kept under."""
 
 _called: list[_Called] = []
-"""The kernels that machine code is asked for, in the order in which they were; for most of them it is kept."""
+"""Kernels that machine code is asked for, in the order in which they were; for most of them it is kept."""
 
 
 @dataclass(eq=False)
@@ -36,7 +36,7 @@ def add_to_compiling(seconds: float) -> None:
 
 
 def seconds_compiling() -> float:
-    """How long this thread has waited for machine code so far [s]."""
+    """Return how long this thread has waited for machine code so far [s]."""
     return _compiling.seconds
 
 
@@ -59,5 +59,5 @@ def mark_cache_miss() -> None:
 
 
 def kernel_at_work() -> str:
-    """The kernel that is being compiled, others wait for it; empty where none is."""
+    """Return the kernel that is being compiled, others wait for it; empty where none is."""
     return next((called.name for called in list(_called) if called.not_kept), "")

@@ -26,7 +26,7 @@ _arrays: Any = numba.np.arrayobj
 
 
 def count_known(numbers: Any) -> int:
-    """The count of a law as the compiler knows it, from numba's type of the law's numbers."""
+    """Return the count of a law as the compiler knows it, from numba's type of the law's numbers."""
     law, structure, _ = law_of_numbers[numbers.instance_class]
     if not issubclass(law, MemoryLaw):
         return int(law.memory_kind != "none")
@@ -34,7 +34,7 @@ def count_known(numbers: Any) -> int:
 
 
 def count_of(law: Any) -> int:
-    """How many numbers a law remembers: a constant to the compiler."""
+    """Return how many numbers a law remembers: a constant to the compiler."""
     return int(law.count())
 
 
@@ -72,7 +72,7 @@ def _room(typing: Any, law: Any, each: Any, more: Any, item: Any) -> Any:
 
 
 def _interpreted_room(law: Any, each: int, more: int, item: Any) -> Any:
-    """The same where Python runs the kernels."""
+    """Return the same where Python runs the kernels."""
     return np.zeros(max(1, each * count_of(law) + more), complex if isinstance(item, complex) else float)
 
 

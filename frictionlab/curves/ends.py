@@ -39,7 +39,7 @@ class Shakedown(NamedTuple):
     planar: str
 
     def friction(self) -> float:
-        """The limit of mean friction at vanishing belt speed under this vibration. Raises UnreadableCurve."""
+        """Return the limit of mean friction at vanishing belt speed under this vibration. Raises UnreadableCurve."""
         across = 0j if self.planar == "per-axis" else self.across
         size = largest_magnitude(self.along, across)
         if size == 0.0:
@@ -57,7 +57,7 @@ class Shakedown(NamedTuple):
 
 
 def largest_magnitude(along: complex, across: complex) -> float:
-    """The largest magnitude, within a period, of a vector of two harmonic components."""
+    """Return the largest magnitude, within a period, of a vector of two harmonic components."""
     if math.inf in (abs(along), abs(across)):
         return math.inf
     squares = abs(along) ** 2 + abs(across) ** 2
@@ -65,7 +65,7 @@ def largest_magnitude(along: complex, across: complex) -> float:
 
 
 def shakedown_of_slip(law: BristleLaw, value: Value) -> Shakedown:
-    """The shakedown under a prescribed slip; ``law`` is per unit of the scene's normal load."""
+    """Return the shakedown under a prescribed slip; ``law`` is per unit of the scene's normal load."""
     frequency = value("scene.slip.frequency") or value("scene.transverse_slip.frequency")
     along, across = (
         cmath.rect(value(f"{slip}.velocity_amplitude") / frequency, math.radians(value(f"{slip}.phase")))
@@ -75,7 +75,7 @@ def shakedown_of_slip(law: BristleLaw, value: Value) -> Shakedown:
 
 
 def shakedown_of_body(law: BristleLaw, value: Value, along: complex, across: complex) -> Shakedown:
-    """The shakedown of a body under two forces: its bristles act in parallel to its springs and dashpots."""
+    """Return the shakedown of a body under two forces: its bristles act in parallel to its springs and dashpots."""
     load, omega = value("scene.normal_load"), value("scene.drive.frequency")
     bristles = law.friction(0.0, 1.0, 0.0)
     stiffness, damping = load * bristles, load * law.friction(1.0, 0.0, 1.0)
@@ -100,7 +100,7 @@ _SAME = 1e-9  # relative spread of equal numbers with rounding errors
 
 
 class Loads(NamedTuple):
-    """The loads on the body of a curve, the same at every belt speed; forces in K_1 L.
+    """Loads on the body of a curve, the same at every belt speed; forces in K_1 L.
 
     along, across: phasors of the forces along and across the belt. static_limit: the largest friction force at
     rest if the law defines one, else NaN. prescribed: whether the slip is prescribed. shakedown: for bristles, their
@@ -122,12 +122,12 @@ class Loads(NamedTuple):
 
     @property
     def along_belt_only(self) -> bool:
-        """Whether no load and no slip act across the belt."""
+        """Check whether no load and no slip act across the belt."""
         return self.across == 0 and not self.across_slip > 0.0
 
     @property
     def largest(self) -> float:
-        """The largest magnitude of the load vector within a period."""
+        """Return the largest magnitude of the load vector within a period."""
         return largest_magnitude(self.along, self.across)
 
 
@@ -153,14 +153,14 @@ class Rows(NamedTuple):
 
     @property
     def constant_friction(self) -> bool:
-        """Whether steady sliding has one friction coefficient at every speed."""
+        """Check whether steady sliding has one friction coefficient at every speed."""
         steady = self.steady
         known = steady[np.isfinite(steady)]
         return bool(known.size and np.ptp(known) <= _SAME * np.abs(known).max())
 
 
 def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Estimate, bool]:
-    """The belt speed above which slip neither reverses nor sticks, and whether friction has a known kink there.
+    """Belt speed above which slip neither reverses nor sticks, and whether friction has a known kink there.
 
     V_lin for constant friction along the belt (and for prescribed slip, whose velocity amplitude it is), else between
     the last point with reversal or stick and the next. Raises UnreadableCurve.
@@ -175,14 +175,14 @@ def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Estimate, bool]:
 
 
 def reverses(rows: Rows) -> NDArray[np.bool_]:
-    """Whether slip reverses or sticks at each of the points."""
+    """Check whether slip reverses or sticks at each of the points."""
     counted = np.isfinite(rows.reversals)
     on = (rows.reversals > 0.0) | (rows.stick_fraction > 0.0)
     return np.where(counted, on, rows.velocity_amplitude > rows.belt_speed)
 
 
 def _bracket_end(rows: Rows) -> Estimate:
-    """The end of reversal between two points, where the velocity amplitude of x1 falls below the belt speed."""
+    """End of reversal between two points, where the velocity amplitude of x1 falls below the belt speed."""
     excess, on = rows.velocity_amplitude - rows.belt_speed, reverses(rows)
     if not on.any():
         raise UnreadableCurve(
@@ -201,7 +201,7 @@ def _bracket_end(rows: Rows) -> Estimate:
 
 
 def start_friction(rows: Rows, loads: Loads) -> Estimate:
-    """The limit of mean friction as belt speed falls to zero. Raises UnreadableCurve.
+    """Return the limit of mean friction as belt speed falls to zero. Raises UnreadableCurve.
 
     Zero by symmetry where the body moves on a belt at rest, or where vibrated bristles drift. A body that sticks
     under constant friction moves with the belt until spring and load at its peak exceed friction: the limit is
@@ -234,7 +234,7 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
 
 
 def _bristle_start(rows: Rows, shakedown: Shakedown, prescribed: bool) -> Estimate:
-    """The limit of friction on elastic bristles, zero where they drift.
+    """Return the limit of friction on elastic bristles, zero where they drift.
 
     The error is the distance to friction at the slowest belt: were the body to vibrate beyond the elastic range, the
     limit would be zero and that friction below the elastic limit.

@@ -100,7 +100,7 @@ class Interpolant(NamedTuple):
 
 
 def interpolant_of(curve: FrictionCurve) -> Interpolant:
-    """The monotone cubic through the points in the angle arcsin(v/v_e).
+    """Return the monotone cubic through the points in the angle arcsin(v/v_e).
 
     In that angle the square-root kink of one degree of freedom is smooth, and prescribed slip a straight line.
     Raises UnreadableCurve for a curve that does not rise.
@@ -164,7 +164,7 @@ class MonotoneCubic(NamedTuple):
 
 
 def monotone_cubic(x: Floats, y: Floats) -> MonotoneCubic:
-    """The monotone cubic through points, x strictly rising, at least two of them.
+    """Return the monotone cubic through points, x strictly rising, at least two of them.
 
     Slopes of the parabola through each point and its neighbours, limited to prevent overshoot: second
     order on any spacing and, unlike the harmonic mean of the chords, third where the curve is smooth.
@@ -185,7 +185,7 @@ def monotone_cubic(x: Floats, y: Floats) -> MonotoneCubic:
 
 
 def _end_slope(near: float, far: float, share: float) -> float:
-    """The slope of the parabola at an end, between zero and twice the chord."""
+    """Return the slope of the parabola at an end, between zero and twice the chord."""
     parabola = near + (near - far) * share
     low, high = sorted((0.0, 2.0 * near))
     return min(max(parabola, low), high)

@@ -16,9 +16,9 @@ import numpy as np
 from frictionlab.values.quantities import Floats
 
 XTOL = 1e-7
-"""Of a root, in steps of the grid."""
+"""Accuracy of a root, in steps of the grid."""
 STRAIGHT = 5e-3
-"""How far a line may leave its chords, as a share of the larger side of the grid."""
+"""Largest distance of a line from its chords, as a share of the larger side of the grid."""
 MOST_CHORDS_HALVED = 5
 MOST_ADDED = 4
 """Edges added along each number, at most."""
@@ -39,7 +39,7 @@ class LevelLine(NamedTuple):
 
 
 def level_lines(function: OfTwoNumbers, known: Floats, level: float = 0.0) -> list[LevelLine]:
-    """The lines on which a function has a level.
+    """Return the lines on which a function has a level.
 
     known: its values on the grid [second, first number], or values near them: beside a line they are found anew.
     """
@@ -61,7 +61,7 @@ def level_lines(function: OfTwoNumbers, known: Floats, level: float = 0.0) -> li
 
 
 def _found_once(function: OfTwoNumbers, level: float) -> OfTwoNumbers:
-    """The function over its level, which is asked once for each place."""
+    """Return the function over its level, which is asked once for each place."""
     found: dict[tuple[float, ...], tuple[float, float]] = {}
 
     def remembered(places: Floats) -> tuple[Floats, Floats]:
@@ -109,7 +109,7 @@ class _Grid(NamedTuple):
         return found
 
     def settled(self, function: OfTwoNumbers) -> _Grid:
-        """The grid with the function's own values at all corners beside a line."""
+        """Return the grid with the function's own values at all corners beside a line."""
         known, found = self.known.copy(), set[Corner]()
         while (
             beside := {corner for edge in _Grid(self.x, self.y, known).edges_crossed() for corner in edge}
@@ -121,7 +121,7 @@ class _Grid(NamedTuple):
         return _Grid(self.x, self.y, known)
 
     def with_lines(self, function: OfTwoNumbers, x: list[float], y: list[float]) -> _Grid:
-        """The grid with more lines."""
+        """Return the grid with more lines."""
         wide = _Grid(np.union1d(self.x, x), np.union1d(self.y, y), np.empty((0, 0)))
         known = np.full((len(wide.y), len(wide.x)), np.nan)
         known[np.ix_(np.isin(wide.y, self.y), np.isin(wide.x, self.x))] = self.known
@@ -131,7 +131,7 @@ class _Grid(NamedTuple):
 
 
 def _with_hidden(grid: _Grid, function: OfTwoNumbers) -> _Grid:
-    """The grid, settled, with lines through places of a sign that none of the corners around them has."""
+    """Return the grid, settled, with lines through places of a sign that none of the corners around them has."""
     from scipy.interpolate import RectBivariateSpline
     from scipy.ndimage import distance_transform_edt, maximum_filter
 
@@ -208,7 +208,7 @@ def _chains(chords: list[tuple[int, int]]) -> list[list[int]]:
 def _followed(
     function: OfTwoNumbers, chains: list[list[Floats]], straight: float, far: Floats
 ) -> list[list[Floats]]:
-    """The chains with places between theirs until every chord is as good as straight."""
+    """Return the chains with places between theirs until every chord is as good as straight."""
     bent = [[True] * (len(chain) - 1) for chain in chains]
     for _ in range(MOST_CHORDS_HALVED):
         asked = [(i, k) for i, flags in enumerate(bent) for k, flag in enumerate(flags) if flag]
@@ -229,7 +229,7 @@ def _followed(
 
 
 def _roots(function: OfTwoNumbers, low: Floats, high: Floats) -> Floats:
-    """The root between two places each; NaN where there is no change of sign."""
+    """Return the root between two places each; NaN where there is no change of sign."""
     from scipy.optimize.elementwise import find_root
 
     def along(share: Floats, at: Floats) -> Floats:
@@ -251,7 +251,7 @@ def _roots(function: OfTwoNumbers, low: Floats, high: Floats) -> Floats:
 
 
 def _errors(function: OfTwoNumbers, line: Floats, far: Floats) -> Floats:
-    """How far the line may be from each of its places: the error of the function over its slope, along both."""
+    """Estimate how far the line is from each of its places: the error of the function over its slope, along both."""
     inward = np.where(line > 0.5 * far, -_APART, _APART)
     beside = [line + inward * axis for axis in np.eye(2)]
     values, bounds = function(np.concatenate([line, *beside]))

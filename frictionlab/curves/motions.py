@@ -1,4 +1,4 @@
-"""The steady motions of one curve, and how far each is from stick and from the end of reversal."""
+"""Steady motions of one curve, and how far each is from stick and from the end of reversal."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from frictionlab.theory.rest import friction_at_rest
 from frictionlab.values.quantities import Floats
 
 _LEAST = 1e-12
-"""The least distance from stick of a motion that slips throughout."""
+"""Least distance from stick of a motion that slips throughout."""
 _NOTHING = 1e-100
-"""The static limit of a contact that holds nothing."""
+"""Static limit of a contact that holds nothing."""
 _FINE = interpolation_weights(np.linspace(-1.0, 1.0, 201))
 
 
 class MotionSeen(NamedTuple):
-    """What the steady motion at a belt speed shows.
+    """Facts of the steady motion at a belt speed.
 
     reason: why there is none, '' where there is one. sticks, reverses: whether it rests on the belt; whether its slip
     along x1 reverses or rests. to_stick: distance from stick, negative where it sticks: how far the force that would
@@ -47,11 +47,11 @@ class MotionSeen(NamedTuple):
 
 
 SolveScenes = Callable[[Scenes], list[tuple[Answers, int]]]
-"""What answers scenes that differ in belt speed alone, whatever happens: for each its answers and its place there."""
+"""Solver of scenes that differ in belt speed alone: for each the answers and its place among them."""
 
 
 class CurveMotions:
-    """The steady motions of one scene under a law at any belt speed > 0.
+    """Steady motions of one scene under a law at any belt speed > 0.
 
     law: in the lengths and times of the scene, per unit of its normal load. solve: by the method of the curve.
     tell_onsets: whether instants of stick and reversal are solved for. looks: how many were solved for.
@@ -131,7 +131,7 @@ class CurveMotions:
     def _distance_from_stick(
         self, orbit: Orbit, slip: np.ndarray, limit: Floats, belt_acceleration: np.ndarray
     ) -> float:
-        """Of a motion that slips throughout: the least, over the instants at which slip is least.
+        """Return the least slip of a motion that slips throughout, over the instants at which slip is least.
 
         The force that would keep the mass with the belt follows from its acceleration and its friction.
         """
@@ -150,7 +150,7 @@ class CurveMotions:
 
 
 def _largest(values: Floats, stick: np.ndarray) -> float:
-    """The maximum over the panels of slip, extremes between their nodes included."""
+    """Return the maximum over the panels of slip, extremes between their nodes included."""
     values = values[~stick]
     if not len(values):
         return 0.0

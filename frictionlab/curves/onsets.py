@@ -1,4 +1,4 @@
-"""The place between two belt speeds at which a motion changes its kind.
+"""Place between two belt speeds at which a motion changes its kind.
 
 The onsets of one curve: belt speeds at which stick begins, stick ends and reversal ends.
 """
@@ -39,7 +39,7 @@ class DistanceAt(NamedTuple):
 def change_between(
     distance: DistanceOf, low: DistanceAt, high: DistanceAt, width: float, most: int
 ) -> LocatedOnset:
-    """Where a function changes its sign between two samples of opposite sign, to a bracket of this width.
+    """Return where a function changes its sign between two samples of opposite sign, to a bracket of this width.
 
     The function is smooth on each side, with a kink or a jump where it changes its sign. So the line through the two
     nearest samples of a side tells where it ends; the next sample lies beyond that by what such estimates differ, so
@@ -71,7 +71,7 @@ def change_between(
 
 
 def _next(below: list[DistanceAt], above: list[DistanceAt], width: float) -> float:
-    """The next belt speed to look at, inside the bracket."""
+    """Return the next belt speed to look at, inside the bracket."""
     a, b = below[-1].x, above[-1].x
     pairs = [pair for pair in (below[-2:], above[-2:]) if len(pair) == 2]
     ends = [place for pair in pairs for place in _zeros(*pair) if a < place < b]
@@ -89,7 +89,7 @@ def _next(below: list[DistanceAt], above: list[DistanceAt], width: float) -> flo
 
 
 def _zeros(first: DistanceAt, second: DistanceAt) -> list[float]:
-    """Where the line through two samples is zero; nothing for one that is level."""
+    """Return where the line through two samples is zero; nothing for one that is level."""
     rise = second.f - first.f
     return [first.x - first.f * (second.x - first.x) / rise] if rise != 0.0 else []
 
@@ -107,7 +107,7 @@ makes motions unique, and starts are compared for each (in the plane at most one
 _NEAR = 0.3
 """DistanceOf from stick below which the motions between two of a kind are looked at, for a window that none shows."""
 _ROUNDING = 1e-12
-"""Of V_lin."""
+"""Relative rounding of V_lin."""
 _NOISE = 10.0
 """Error of a distance over that of the mean friction coefficient, relative to the static one."""
 
@@ -131,7 +131,7 @@ class Onset(NamedTuple):
 
 
 class KnownRow(NamedTuple):
-    """What a row of the result table says of the motion at its belt speed > 0."""
+    """Facts that a row of the result table has of the motion at its belt speed > 0."""
 
     belt_speed: float
     sticks: bool
@@ -139,7 +139,7 @@ class KnownRow(NamedTuple):
 
 
 def onsets_along(motions: CurveMotions, rows: list[KnownRow], most: int) -> list[Onset]:
-    """The onsets between the rows of a curve, ascending, of which only those with a motion are given.
+    """Return the onsets between the rows of a curve, ascending, of which only those with a motion are given.
 
     most: motions that may be solved for; ``_MOST`` of them at most. A window of stick narrower than the rows is found
     where the motions beside it come near stick: the distance from stick is followed to its least value between rows.
@@ -293,7 +293,7 @@ class _Search:
 
 
 def _comes_near(before: MotionSeen, here: MotionSeen, after: MotionSeen) -> bool:
-    """Whether a motion is nearer the other kind than its neighbours of the same kind."""
+    """Check whether a motion is nearer the other kind than its neighbours of the same kind."""
     sizes = [abs(each.to_stick) for each in (before, here, after)]
     alike = before.sticks == here.sticks == after.sticks and here.reverses
     return alike and sizes[1] <= min(sizes[0], sizes[2]) and sizes[1] < _NEAR

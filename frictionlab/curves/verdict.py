@@ -1,4 +1,4 @@
-"""The shape of a friction curve: its side of the chord, the area between them, and the errors of both.
+"""Shape of a friction curve: its side of the chord, the area between them, and the errors of both.
 
 The curve is mean friction m over belt speed, from rest to the end of reversal v_e, above which slip neither
 reverses nor sticks. Every number has an error bound: the sum of the effects of the errors of the points, of their
@@ -28,12 +28,12 @@ from frictionlab.values.quantities import EPSILON, Floats
 __all__ = ["Estimate", "FrictionCurve", "Shape", "UnreadableCurve", "reduction", "shape_of"]
 
 _PARTS = 16
-"""Of the range, over which errors of an area do not cancel."""
+"""Parts of the range, over which errors of an area do not cancel."""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """The measures of a curve; ``initial`` is None where no points lie near enough to rest.
+    """Measures of a curve; ``initial`` is None where no points lie near enough to rest.
 
     area: chord area; > 0 above the chord. window_area: the same over the first 0.8 of the range, against its
     own chord. half: friction at half the range over that at its end. initial: curvature at rest. above, below:
@@ -49,7 +49,7 @@ class Shape:
 
     @property
     def by_area(self) -> str:
-        """The verdict by area: concave, convex, mixed or undecided."""
+        """Return the verdict by area: concave, convex, mixed or undecided."""
         if self.area.sign == 0 or self.window_area.sign != self.area.sign:
             return "undecided"
         if self.above.sign > 0 and self.below.sign > 0:
@@ -58,7 +58,7 @@ class Shape:
 
     @property
     def by_initial(self) -> str | None:
-        """The verdict by the curvature at rest: concave, convex or undecided; None without that measure."""
+        """Return the verdict by the curvature at rest: concave, convex or undecided; None without that measure."""
         if self.initial is None:
             return None
         return ("undecided", "convex", "concave")[self.initial.sign]
@@ -88,7 +88,7 @@ def shape_of(curve: FrictionCurve, even: bool = False) -> Shape:
 
 
 def reduction(normalized: Floats, error: Floats) -> Estimate:
-    """The largest fall of friction below that of steady sliding over the points: 1 - m/steady.
+    """Return the largest fall of friction below that of steady sliding over the points: 1 - m/steady.
 
     normalized: mean friction over that of steady sliding, at rising belt speeds; error: of that ratio. Where the
     least value lies between others, a quarter of the rise beside it is added for the minimum between the points.
@@ -114,12 +114,12 @@ def _apart(one: Interpolant, other: Interpolant) -> Floats:
 
 
 def _reaches_rest(curve: FrictionCurve) -> bool:
-    """Whether two points lie within the second difference at rest."""
+    """Check whether two points lie within the second difference at rest."""
     return int(np.count_nonzero(curve.speed[curve.inside] <= 2.0 * STEP * curve.end.value)) >= 2
 
 
 def _point_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
-    """The effect of the errors of the points, and of the first interval, in which the curve is only known to rise."""
+    """Effect of the errors of the points, and of the first interval, in which the curve is only known to rise."""
     low, high = curve.start.value, curve.end_friction
     rise, share = high - low, curve.speed / curve.end.value
     edge = max(float(np.interp(WINDOW, ABSCISSAE, best.range)), 1e-12)  # a curve may fall again
@@ -140,7 +140,7 @@ def _point_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
 
 
 def _spacing_errors(curve: FrictionCurve, best: Interpolant, even: bool) -> Floats:
-    """The distance to the interpolant of every second point; for a local measure the largest distance around it.
+    """Distance to the interpolant of every second point; for a local measure the largest distance around it.
 
     Twice the spacing makes the error of the interpolant at least four times as large.
     """
@@ -161,7 +161,7 @@ def _spacing_errors(curve: FrictionCurve, best: Interpolant, even: bool) -> Floa
 
 
 def _area_apart(one: Floats, other: Floats) -> float:
-    """The difference of two areas, or the root of the sum of its squares over parts of the range.
+    """Return the difference of two areas, or the root of the sum of its squares over parts of the range.
 
     Of points evenly spaced, errors of neighbours cancel, and those of far parts at most by chance.
     """
@@ -170,7 +170,7 @@ def _area_apart(one: Floats, other: Floats) -> float:
 
 
 def _end_errors(curve: FrictionCurve, best: Interpolant) -> list[Floats]:
-    """The change of each measure when the start or the end of the curve moves to a bound of its interval."""
+    """Return the change of each measure when the start or the end of the curve moves to a bound of its interval."""
     starts = [replace(curve, start=Estimate(place, 0.0)) for place in curve.start.ends]
     ends = [replace(curve, end=Estimate(place, 0.0)) for place in curve.end.ends]
     moved = [[_apart(interpolant_of(other), best) for other in alike] for alike in (starts, ends)]

@@ -63,7 +63,7 @@ class Auto(Method):
     resolves_events: ClassVar[bool] = True
 
     def choice(self, scene: Scene, law: FrictionLaw) -> tuple[Method | None, str]:
-        """The method for this scene and law, and why; None where every method refuses."""
+        """Return the method for this scene and law, and why; None where every method refuses."""
         methods, against = _methods_for(scene), list[str]()
         if not methods:
             return None, NOT_INSTALLED
@@ -76,7 +76,7 @@ class Auto(Method):
         return None, "; ".join(dict.fromkeys(part for reason in against for part in reason.split("; ")))
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """The reasons of all methods, where every one refuses."""
+        """Return the reasons of all methods, where every one refuses."""
         method, reason = self.choice(scene, law)
         return reason if method is None else None
 
@@ -101,7 +101,7 @@ class Auto(Method):
         return [] if any(shooting.refusals([scene], law)) else shooting.motion(scene, law, periods, tolerance)
 
     def foreseen(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> str:
-        """What will answer these scenes and why, as far as that is known before anything is computed."""
+        """Return what will answer these scenes and why, as far as that is known before anything is computed."""
         method, why = self.choice(scenes[0], law)
         return "none" if method is None else f"{method.name} ({why})"
 

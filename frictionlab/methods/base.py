@@ -1,4 +1,4 @@
-"""What every steady-state method is: it says what it accepts, refuses the rest with a reason, solves curves."""
+"""Base of every steady-state method: it says what it accepts, refuses the rest with a reason, solves curves."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from frictionlab.values.quantities import Floats, Record, gone
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
 PROVED, TESTED, NOT_UNIQUE = "proved", "tested", "no"
-"""Of the only steady state: a theorem says so, starts far apart ended in it, others end elsewhere."""
+"""Words on the only steady state: a theorem says so, starts far apart ended in it, others end elsewhere."""
 STATISTICAL = "statistical"
 """Kind of the error of a long-time mean: two standard errors, of which no tolerance is asked."""
 
 
 def no_orbit(i: int) -> None:
-    """Of answers without orbits."""
+    """Refuse an orbit: answers have none."""
 
 
 def none_found(i: int) -> list[Any]:
-    """Of answers that know of no other states."""
+    """Return no states: answers know of no others."""
     return []
 
 
 class Multipliers(NamedTuple):
-    """Of each scene the largest modulus of its Floquet multipliers and the bound on its error, NaN where not known.
+    """Largest modulus of the Floquet multipliers of each scene, and the bound on its error, NaN where not known.
 
     reason: why it is empty although there is a motion, else ''.
     """
@@ -389,7 +389,7 @@ def _states_as_long(states: Sequence[FoundState], length: float) -> list[FoundSt
 
 
 REDUCED_MODELS = frozenset({"harmonic_balance", "mdsm"})
-"""The names of those that solve a simpler problem, known without loading them."""
+"""Names of those that solve a simpler problem, known without loading them."""
 
 
 FOR_MEMORY = "relay_locus"
@@ -407,13 +407,13 @@ class ReducedModel(Method):
 
     @abstractmethod
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
-        """The mean friction of the model alone, as ``solve`` has it, without its error.
+        """Return the mean friction of the model alone, as ``solve`` has it, without its error.
 
         Of scenes with a mass that differ in belt speed alone, none refused; NaN where the model has no answer.
         """
 
 
 def refused(reasons: Sequence[str]) -> Answers:
-    """The answers of a method that cannot do these scenes."""
+    """Return the answers of a method that cannot do these scenes."""
     n, nothing = len(reasons), np.full(len(reasons), np.nan)
     return Answers(["refused"] * n, list(reasons), [""] * n, [""] * n, nothing, nothing)

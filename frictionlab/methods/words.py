@@ -1,4 +1,4 @@
-"""The column ``model``: a few words in every row, of each of which this is the sentence.
+"""Column ``model``: a few words in every row, of each of which this is the sentence.
 
 A model reads ``words; more words (auto: method, why)``; what holds numbers, such as steps, says itself what it is.
 """
@@ -11,13 +11,13 @@ AUTO = " (auto: "
 
 
 class ModelWord(StrEnum):
-    """What produced a number, what was made use of, how it is known to be the only one, why auto chose the method."""
+    """Words on what made a number, what was used, how it is known to be the only one, why auto chose the method."""
 
     sentence: str
     __repr__ = str.__repr__
 
     def __new__(cls, word: str, sentence: str) -> ModelWord:
-        """The word as it is in the table, with what it stands for."""
+        """Return the word as it is in the table, with what it stands for."""
         made = str.__new__(cls, word)
         made._value_, made.sentence = word, sentence
         return made
@@ -148,13 +148,13 @@ def _sentence(word: str) -> str:
 
 
 def why_unique_in_words(model: str) -> str:
-    """The theorem that a model names; empty where it names none."""
+    """Return the theorem that a model names; empty where it names none."""
     words = model.partition(AUTO)[0].split("; ")
     return next((_sentence(each).partition(": ")[2] for each in words if each.startswith("unique: ")), "")
 
 
 def model_in_sentences(model: str) -> str:
-    """What a cell of the column says, each word by its sentence; words of other methods stay as they are."""
+    """Return what a cell of the column says, each word by its sentence; words of other methods stay as they are."""
     words, _, chosen = model.partition(AUTO)
     method, _, why = chosen.removesuffix(")").partition(", ")
     told = [_sentence(each) for each in words.split("; ")]

@@ -42,7 +42,7 @@ def jobs(
     law_files: Sequence[Path] = (),
     plugins: Plugins = "run",
 ) -> list[Job]:
-    """The studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes, BrokenPlugin.
+    """Studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes, BrokenPlugin.
 
     plugins: whether law files that a study itself lists are run, or refused.
     """
@@ -57,7 +57,7 @@ def jobs(
 
 
 def index_folder(path: Path, out: Path | None) -> Path | None:
-    """Where a folder of studies gets its index; None for a single study. Raises FolderError."""
+    """Return where a folder of studies gets its index; None for a single study. Raises FolderError."""
     if not path.is_dir():
         return None
     folder = _folder(path, out)
@@ -101,7 +101,7 @@ def check_folders(found: Sequence[Job], existing: Existing, alone: bool = True) 
 
 @dataclass(frozen=True)
 class Planned:
-    """The points of one law and one method.
+    """Points of one law and one method.
 
     about: belt speeds are chosen as the run goes, so that points are not known better.
     shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
@@ -160,6 +160,6 @@ def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
 
 
 def _model(method: Method, scenes: Scenes, law: FrictionLaw, tolerance: float) -> str:
-    """The model that will compute the numbers, and why; the name of a method that makes no choice."""
+    """Return the model that will compute the numbers, and why; the name of a method that makes no choice."""
     auto: Any = registry.method_class("auto")
     return str(auto.foreseen(method, scenes, law, tolerance)) if isinstance(method, auto) else method.name

@@ -1,4 +1,4 @@
-"""The table of boundaries of a run: lines over two swept numbers on which a measure of the curves has a level.
+"""Table of boundaries of a run: lines over two swept numbers on which a measure of the curves has a level.
 
 A measure of many curves at once, straight from what methods find: no table of their points is made.
 
@@ -78,7 +78,7 @@ class _Points:
         self.curves, self._tolerance, self._force = curves, tolerance, force
 
     def at(self, speeds: Sequence[Floats], orbits: bool = True) -> list[Rows]:
-        """Of every curve its points at these belt speeds, rising; without orbits those columns are empty."""
+        """Solve every curve at these belt speeds, rising; without orbits those columns are empty."""
         curves, first = list[StudyCurve](), 0
         for curve, own in zip(self.curves, speeds, strict=True):
             si = curve.scenes.scene.dimensional
@@ -101,7 +101,7 @@ class _Points:
 
 
 def _up_to_the_end(points: _Points, known: Sequence[Loads]) -> list[Rows]:
-    """Of every curve points up to its end of reversal; where no V_lin tells of it, those of its study."""
+    """Return points of every curve up to its end of reversal; where no V_lin tells of it, those of its study."""
     speeds, sought, in_orbits = list[Floats](), list[Floats](), False
     for curve, load in zip(points.curves, known, strict=True):
         scene, law = curve.scenes.scene, curve.law
@@ -123,7 +123,7 @@ def _up_to_the_end(points: _Points, known: Sequence[Loads]) -> list[Rows]:
 
 
 def _around_ends(points: _Points, known: Sequence[Loads], first: Sequence[Floats]) -> list[Rows]:
-    """Of every curve points between which reversal ends, from these belt speeds on; none where these are none."""
+    """Return points of every curve between which reversal ends, from these belt speeds on; none without these."""
     rows, new = [Rows(*[NO_SPEEDS] * len(Rows._fields))] * len(first), first
     for _ in range(_ROUNDS):
         if not any(map(len, new)):
@@ -229,7 +229,7 @@ class _Sought(NamedTuple):
         return curves.pivot(index=second, columns=first, values=measure).to_numpy(dtype=float)
 
     def measured(self, measure: str, force: Workforce, laws: registry.Laws) -> OfTwoNumbers:
-        """The measure of curves at places in steps of the grid, and its error."""
+        """Return the measure of curves at places in steps of the grid, and its error."""
         return lambda places: measures_of(self._curves(places), measure, self.study.tolerance, force, laws)
 
     def _curves(self, places: Floats) -> list[StudyCurve]:
@@ -246,7 +246,7 @@ class _Sought(NamedTuple):
         return list(one.curves())
 
     def numbers(self, line: LevelLine) -> dict[str, Floats]:
-        """The columns of both axes along a line, each with its error."""
+        """Return the columns of both axes along a line, each with its error."""
         found = dict[str, Floats]()
         for at, axis in enumerate(self.axes):
             place, error = line.places[:, at], line.errors[:, at]

@@ -35,7 +35,7 @@ _WIDEST = 3.0
 def halves_to_add(
     speeds: Floats, means: Floats, errors: Floats, breaks: Floats, within: float, closest: float
 ) -> Floats:
-    """The middle of every interval in which a chord may deviate from the curve by more than ``within``.
+    """Return the middle of every interval in which a chord may deviate from the curve by more than ``within``.
 
     speeds: ascending; means, errors: NaN where a point has no number: nothing is known beside one, and nothing added.
     breaks: speeds at which the curve may have a kink, such as V_lin; the points on one side say nothing of the other.
@@ -64,7 +64,7 @@ def _halves(speeds: Floats, means: Floats, errors: Floats, within: float, closes
 
 
 def chord_deviation(speeds: Floats, means: Floats) -> Floats:
-    """How far a curve may be from each of the chords between its points; infinite of two points alone.
+    """Return how far a curve may be from each of the chords between its points; infinite of two points alone.
 
     Where slopes rise from chord to chord, or fall, and go on so between points, the curve lies in the triangle of a
     chord and its neighbours carried on: its height bounds the deviation; a half is added. Where the curvature at
@@ -102,7 +102,7 @@ def _largest(curvature: Floats, reach: int) -> Floats:
 
 
 def _alike(curvature: Floats) -> NDArray[np.bool_]:
-    """Whether the curvature around an interval has one sign and, but for a factor of two, one size."""
+    """Check whether the curvature around an interval has one sign and, but for a factor of two, one size."""
     near = _around(curvature, 2)
     low, high = np.nanmin(near, axis=1), np.nanmax(near, axis=1)
     ends_known = np.isfinite(near[:, 1]) & np.isfinite(near[:, 2])
@@ -117,7 +117,7 @@ Known = tuple[Floats, Floats, Floats]
 """Belt speeds of a curve, ascending, their mean friction and its error; NaN where there is no number."""
 
 SHARES = (0.025, 0.05, *(0.1 * k for k in range(1, 10)))
-"""Of V_lin: what the shape of a curve is read from where no more belt speeds are asked for."""
+"""Shares of V_lin that the shape of a curve is read from where no more belt speeds are asked for."""
 
 
 class ChosenSpeeds(NamedTuple):
@@ -196,7 +196,7 @@ def _breaks(laws: Sequence[FrictionLaw], scene: Scene, along: SpeedRange) -> Flo
 
 
 def _named(study: Study, along: SpeedRange) -> Floats:
-    """The belt speeds in the range that the study expects something of."""
+    """Return the belt speeds in the range that the study expects something of."""
     path = next(path for path, each in study.ranges.items() if each is along)
     wanted = [each.where[path] for each in study.expect if path in each.where]
     found = [one for each in wanted for one in (each if isinstance(each, list) else [each])]
@@ -219,7 +219,7 @@ def _first(along: SpeedRange, breaks: Floats, named: Floats) -> Floats:
 
 
 def _asked(known: Sequence[Known], breaks: Floats, along: SpeedRange) -> Floats:
-    """The belt speeds that the curves of one scene still need."""
+    """Return the belt speeds that the curves of one scene still need."""
     closest = CLOSEST * (along.stop - along.start)
     return np.unique(np.concatenate([halves_to_add(*each, breaks, along.within, closest) for each in known]))
 

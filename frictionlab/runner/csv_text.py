@@ -16,7 +16,7 @@ _LARGEST_PLAIN = 1e10
 
 
 def as_csv(table: pd.DataFrame, header: bool = True) -> bytes:
-    """The rows, below the names of the columns; empty cells for what is not there."""
+    """Return the rows, below the names of the columns; empty cells for what is not there."""
     names = _line(table.columns).encode() if header else b""
     if not len(table) or not len(table.columns):
         return names
@@ -27,7 +27,7 @@ def as_csv(table: pd.DataFrame, header: bool = True) -> bytes:
 
 
 def _cells(column: pd.Series) -> pa.Array:
-    """The text of every cell; null for an empty one."""
+    """Return the text of every cell; null for an empty one."""
     if column.dtype.kind == "f":
         return _numbers(column.to_numpy())
     places, different = pd.factorize(column)

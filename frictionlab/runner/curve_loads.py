@@ -1,4 +1,4 @@
-"""What curves are read by in scenes that have more than one sine along the belt and one across it.
+"""Loads by which curves are read in scenes that have more than one sine along the belt and one across it.
 
 Belt speeds that a planned curve lacks for the measures of its shape, before anything is computed.
 """
@@ -44,13 +44,13 @@ STICKS_ELASTICALLY = (
 
 
 def varies(given: Mapping[str, Any]) -> bool:
-    """Whether the inputs of a row have more than sines along and across the belt."""
+    """Check whether the inputs of a row have more than sines along and across the belt."""
     parts = (name.split(".") for name, value in given.items() if value is not None and value == value)
     return any(path[0] == "scene" and path[1] != "dimensional" and {*path} & {*KEYS} for path in parts)
 
 
 def scene_of(given: Mapping[str, Any]) -> Scene:
-    """The scene of a row, on a belt at rest."""
+    """Return the scene of a row, on a belt at rest."""
     tree: dict[str, Any] = {"belt_speed": 0.0}
     for name, value in given.items():
         path = name.split(".")
@@ -63,7 +63,7 @@ def scene_of(given: Mapping[str, Any]) -> Scene:
 
 
 def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
-    """The loads of a row; law: as methods received it, None where it is not known."""
+    """Return the loads of a row; law: as methods received it, None where it is not known."""
     scene = bound(Scenes.of([scene_of(given)]))[0]
     prescribed = scene.degrees_of_freedom == 0
     remembers = law is not None and law.memory_kind != "none"
@@ -86,7 +86,7 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
 
 
 def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether a curve of this scene has a known mean friction at vanishing belt speed."""
+    """Check whether a curve of this scene has a known mean friction at vanishing belt speed."""
     scene = bound(Scenes.of([scene]))[0]
     varied = scene.belt_vibration is not None or scene.normal_load_variation is not None
     if not scene.is_harmonic or varied or scene.body_terms or not law.obeys("oddness"):
@@ -96,7 +96,7 @@ def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
-    """The mean friction at vanishing belt speed, or why it is not known; zero where both directions are alike."""
+    """Mean friction at vanishing belt speed, or why it is not known; zero where both directions are alike."""
     remembers = law is not None and law.memory_kind != "none"
     prescribed = scene.degrees_of_freedom == 0
     if prescribed and not remembers and _rests_at_its_largest(scene):
@@ -116,7 +116,7 @@ def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
 
 
 def _rests_at_its_largest(scene: Scene) -> bool:
-    """Whether a slip along the belt keeps its largest velocity for a while, as a square one does."""
+    """Check whether a slip along the belt keeps its largest velocity for a while, as a square one does."""
     signals = scene.signals()
     slip = piecewise(signals.belt[0], signals.edges())
     flat = np.abs(slip.middle[(slip.slope == 0.0) & (slip.curvature() == 0.0)])
@@ -133,7 +133,7 @@ def _direction(scene: Scene) -> float:
 
 
 def repeats_mirrored(scene: Scene) -> bool:
-    """Whether half a period later loads and belt are the opposite of what they were, and the normal load the same.
+    """Check whether half a period later loads and belt are opposite, and the normal load the same.
 
     Never of a spring that is not the same to both sides.
     """
@@ -153,15 +153,15 @@ def repeats_mirrored(scene: Scene) -> bool:
 
 
 BEYOND = 1.05
-"""The last belt speed, over the end of reversal, where that is only estimated."""
+"""Last belt speed, over the end of reversal, where that is only estimated."""
 _AT_REST = 2
 """Points up to two steps of the second difference at rest."""
 _DIGITS = 2
-"""Of a belt speed that is told."""
+"""Digits of a belt speed that is told."""
 
 
 def speeds_to_add(curves: Iterable[tuple[Scenes, FrictionLaw]]) -> tuple[int, list[float]]:
-    """How many of these curves lack points for some measure of shape, and belt speeds that serve all, rising.
+    """Return how many of these curves lack points for some measure of shape, and belt speeds that serve all, rising.
 
     Belt speeds in the units in which the scenes are given. The end of reversal is taken to be V_lin, as it is for
     laws of constant friction in one degree of freedom. Curves of one belt speed have no shape; those without V_lin

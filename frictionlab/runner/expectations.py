@@ -24,14 +24,14 @@ _BY = {"area": "area", "initial": "initial curvature"}
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether an expectation held, and what was found against what was claimed."""
+    """Judgement on an expectation: whether it held, and what was found against what was claimed."""
 
     passed: bool
     sentence: str
 
 
 def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -> Verdict:
-    """The verdict on one expectation, which must hold for every row or curve it speaks of; none at all fails.
+    """Return the verdict on one expectation, which must hold for every row or curve it speaks of; none at all fails.
 
     curves: the table of curves that goes with the table.
     """
@@ -96,7 +96,7 @@ def _about(expectation: Expectation) -> str:
 
 
 def _chosen(where: dict[str, WhereValue]) -> str:
-    """What selects rows, in words."""
+    """Return what selects rows, in words."""
     return ", ".join(f"{column} {_wanted(value)}" for column, value in where.items())
 
 
@@ -169,7 +169,7 @@ def _measured(row: pd.Series, name: str) -> str:
 
 
 def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
-    """The two methods, scene by scene and law by law; each must have a number where the other does."""
+    """Return the two methods, scene by scene and law by law; each must have a number where the other does."""
     assert expectation.max_difference is not None
     assert expectation.below is not None
     first, second = (rows[rows["method"] == label] for label in expectation.max_difference)
@@ -184,7 +184,7 @@ def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
 
 
 def _beside(expectation: Expectation, rows: pd.DataFrame, table: pd.DataFrame) -> Verdict:
-    """The column less, or over, that of the rows with other inputs; rows that have these themselves are left out."""
+    """Column less, or over, that of the rows with other inputs; rows that have these themselves are left out."""
     assert expectation.column is not None
     differ = expectation.minus or expectation.over or {}
     equal = {name: value for name, value in expectation.where.items() if not _differs(name, differ)}
@@ -207,19 +207,19 @@ def _pairs(rows: pd.DataFrame, others: pd.DataFrame, differ: Container[str], col
 
 
 def _differs(name: str, differ: Container[str]) -> bool:
-    """Whether an input is one that differs, or follows from the law where that does."""
+    """Check whether an input is one that differs, or follows from the law where that does."""
     return name in differ or ("law" in differ and (name == "kind" or name.startswith("law.")))
 
 
 def _missing(pairs: pd.DataFrame, column: str) -> Verdict | None:
-    """The verdict on pairs of rows of which some lack a row or its number."""
+    """Return the verdict on pairs of rows of which some lack a row or its number."""
     missing = int(pairs[[column, f"{column} other"]].isna().any(axis=1).sum())
     told = f"{column} is missing in {missing} of {len(pairs)} pairs of rows"
     return Verdict(False, told) if missing else None
 
 
 def _first(rows: pd.DataFrame) -> str:
-    """The first of some rows in words: its status and why."""
+    """Return the first of some rows in words: its status and why."""
     row = rows.iloc[0]
     status = f", {row['status']}" if "status" in row else ""  # curves have none
     reason = f": {row['reason']}" if isinstance(row["reason"], str) and row["reason"] else ""
@@ -236,7 +236,7 @@ def _whose(rows: pd.DataFrame, row: pd.Series) -> str:
 
 
 def _worst(rows: pd.DataFrame, at: Any, what: str, passed: bool) -> str:
-    """Of how many rows or pairs of rows a number is the worst; of a claim that fails, whose it is."""
+    """Tell of how many rows or pairs of rows a number is the worst; of a claim that fails, whose it is."""
     if len(rows) == 1:
         return ""
     told = f" in the worst of {len(rows)} {what}s"

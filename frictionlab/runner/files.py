@@ -19,11 +19,11 @@ from typing import Any
 
 
 class FolderError(Exception):
-    """The run cannot be written to this folder; the message says why and gives a remedy. Nothing was written."""
+    """Run cannot be written to this folder; the message says why and gives a remedy. Nothing was written."""
 
 
 class SaveError(Exception):
-    """The results could not be written, for want of room or of a working disk."""
+    """Results could not be written, for want of room or of a working disk."""
 
 
 def not_written(path: Path, problem: OSError) -> FolderError | SaveError:
@@ -87,7 +87,7 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def _is_running(process: int) -> bool:
-    """Whether it is another process that still runs."""
+    """Check whether it is another process that still runs."""
     if process == os.getpid():
         return False
     if os.name == "nt":  # to ask there is to interrupt

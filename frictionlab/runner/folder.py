@@ -1,4 +1,4 @@
-"""The folder of a run: its table, the study it answers, where it came from; written whole or not at all."""
+"""Folder of a run: its table, the study it answers, where it came from; written whole or not at all."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ SOLVER, ASKED = "solver", "asked"
 
 @dataclass(frozen=True)
 class Identity:
-    """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
+    """Question that a folder's results answer: the study, whole and as a digest of what determines its numbers.
 
     file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
     law_texts: its law files, by their names in the folder. marks: a digest of all code that finds the numbers
@@ -55,12 +55,12 @@ class Identity:
 
     @property
     def text(self) -> str:
-        """The study as a study file."""
+        """Return the study as a study file."""
         return yaml_text(self.study)
 
 
 class RunFolder(FolderFiles):
-    """The output folder of one study."""
+    """Output folder of one study."""
 
     def __init__(self, path: Path, identity: Identity) -> None:
         super().__init__(path)
@@ -94,7 +94,7 @@ class RunFolder(FolderFiles):
                 )
 
     def _copies(self) -> list[Path]:
-        """The copies of laws that the run in this folder kept."""
+        """Return the copies of laws that the run in this folder kept."""
         try:
             names = self.account().get("plugins", [])
         except FolderError:  # without provenance.json the folder may not be a run
@@ -114,7 +114,7 @@ class RunFolder(FolderFiles):
             raise FolderError(f"{self.path} holds results of another study{told}")
 
     def _difference(self) -> str:
-        """The first lines in which the studies differ, for the message."""
+        """Return the first lines in which the studies differ, for the message."""
         try:
             there = self.study_file.read_text(encoding="utf-8").splitlines()
         except (OSError, ValueError):
@@ -126,7 +126,7 @@ class RunFolder(FolderFiles):
         return "\n".join(lines + self._edited())
 
     def _edited(self) -> list[str]:
-        """The plugin laws whose code has changed."""
+        """Return the plugin laws whose code has changed."""
         there = self.account().get("code", {})
         laws = [law for law, code in self.identity.code.items() if there.get(law, code) != code]
         return [f"  the code of law '{law}' was edited since" for law in laws]
@@ -233,7 +233,7 @@ REMEDY = "choose another folder with -o, or replace what is there with --force"
 
 
 def _brief(line: str, others: Sequence[str]) -> str:
-    """Of a long line the part, from a word on, in which it leaves the line most like it."""
+    """Return the part of a long line, from a word on, in which it leaves the line most like it."""
     if len(line.strip()) <= LETTERS_SHOWN:
         return line.strip()
     differs = _equal(line, others)

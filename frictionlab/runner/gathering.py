@@ -44,7 +44,7 @@ def shown_rows(grid: StudyGrid) -> Places:
 
 
 def _shown_curves(grid: StudyGrid) -> list[int]:
-    """The places of curves, of all laws at the same values: ``MOST_CURVES`` at most, as many along each axis."""
+    """Places of curves, of all laws at the same values: ``MOST_CURVES`` at most, as many along each axis."""
     along = [len(axis) for axis in grid.scene_axes if axis is not grid.speed_axis]
     shapes = [(*map(len, grid.own_axes(law)), len(grid.methods), *along) for law in grid.laws]
     firsts = [0, *accumulate(map(math.prod, shapes))]
@@ -67,14 +67,14 @@ def _spread_over(count: int, most: int) -> Places:
 
 
 class Thinned:
-    """The shown rows of a table that comes piece by piece."""
+    """Shown rows of a table that comes piece by piece."""
 
     def __init__(self, rows: Places) -> None:
         self._rows, self._first, self._odd = rows, 0, 0
         self._pieces: list[pd.DataFrame] = []
 
     def add(self, piece: pd.DataFrame) -> None:
-        """The next rows of the table."""
+        """Append the next rows of the table."""
         start, stop = np.searchsorted(self._rows, [self._first, self._first + len(piece)])
         odd = np.flatnonzero((piece["status"] != "ok").to_numpy())[: MOST_ODD - self._odd]
         places = np.union1d(self._rows[start:stop] - self._first, odd)
@@ -84,14 +84,14 @@ class Thinned:
 
     @property
     def table(self) -> pd.DataFrame:
-        """The rows so far, numbered anew."""
+        """Return the rows so far, numbered anew."""
         table = pd.concat(self._pieces, ignore_index=True)
         table.attrs = {**table.attrs, SHOWN_IN_PART: True}
         return table
 
 
 def thinned(pieces: Iterable[pd.DataFrame], rows: Places) -> pd.DataFrame:
-    """The shown rows of a table, piece by piece."""
+    """Return the shown rows of a table, piece by piece."""
     found = Thinned(rows)
     for piece in pieces:
         found.add(piece)

@@ -1,4 +1,4 @@
-"""The tables beside the main one: onsets, attractors, harmonics.
+"""Tables beside the main one: onsets, attractors, harmonics.
 
 The table of onsets of a run: the belt speeds at which its motions change their kind.
 
@@ -80,7 +80,7 @@ def _speed_scale(curve: StudyCurve) -> float:
 
 
 def _is_followed(curve: StudyCurve) -> bool:
-    """Whether a mass on a spring is driven, at more than one belt speed."""
+    """Check whether a mass on a spring is driven, at more than one belt speed."""
     scene = curve.scenes.scene
     return scene.degrees_of_freedom > 0 and not scene.undriven and not scene.is_free and len(curve.rows) > 1
 
@@ -105,7 +105,7 @@ def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) 
 
 
 def _solved(curve: StudyCurve, tolerance: float, scenes: Scenes) -> list[tuple[Answers, int]]:
-    """The answers of every scene."""
+    """Return the answers of every scene."""
     found = answer(Chunk(scenes, curve.law, curve.method.method, Task(tolerance)))
     places = {place: (each.answers, i) for each in found for i, place in enumerate(each.places)}
     return [places[i] for i in range(len(scenes))]
@@ -122,7 +122,7 @@ def _frame(
 
 
 def attractor_table(curves: Sequence[StudyCurve], tolerance: float, starts: int) -> pd.DataFrame:
-    """Of all curves whose method follows motions to wherever they end, by so many starts at each belt speed."""
+    """Find the states of curves whose method follows motions to their ends, from so many starts a belt speed."""
     given = inputs(curves)
     keys = curve_inputs(given.columns)
     rows = [row for curve in curves for row in _rows(curve, given, keys, tolerance, starts)]

@@ -15,7 +15,7 @@ MADE_BY = "charts", "report"
 
 
 def pages_are_there(done: Results, every_point: bool) -> bool:
-    """Whether an earlier run made the same pages of the same tables and nobody changed them since."""
+    """Check whether an earlier run made the same pages of the same tables and nobody changed them since."""
     folder = _folder(done)
     known = folder.account().get("pages", {})
     return known == {"made_of": _made_of(folder, done, every_point), "files": _files(folder.path)}

@@ -21,10 +21,10 @@ from frictionlab.values.quantities import Floats
 MOST_BY_SETTING = 24
 """Rows up to which pairs are told for each set of swept values; beyond, each pair has one row."""
 _FRICTION = "law.mu", "law.mu_kinetic"
-"""Of each law the one that scales friction of steady sliding."""
+"""Coefficients of laws that scale friction of steady sliding."""
 ROUNDING_OF_MEANS = 1e-15
 OWN_ERROR_OF_MODELS = 1e-8
-"""Of the numbers of a reduced model, against its own formulas, at most."""
+"""Largest error of the numbers of a reduced model against its own formulas."""
 _OTHER = " other"
 
 
@@ -48,7 +48,7 @@ class Difference(NamedTuple):
 
 
 def best_rows(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows with a number; of those that differ in their method alone the one with the smallest error."""
+    """Return the rows with a number; of those that differ in their method alone the one with the smallest error."""
     found = table[table["mean_friction"].notna()]
     keys = ["law", *_varied(table)]
     return found.sort_values("error", kind="stable").drop_duplicates(keys).sort_index()
@@ -82,7 +82,7 @@ def method_pairs(table: pd.DataFrame, reduced: Collection[str] = ()) -> list[Dif
 
 
 def shared_inputs(table: pd.DataFrame) -> list[str]:
-    """The inputs that say that two laws are at the same point: the scene, and the laws' parameters swept together.
+    """Inputs that say that two laws are at the same point: the scene, and the laws' parameters swept together.
 
     Friction coefficients are swept together where each law has several; they are then the column ``law.mu`` of
     `with_friction`.
@@ -94,12 +94,12 @@ def shared_inputs(table: pd.DataFrame) -> list[str]:
 
 
 def own_parameters(table: pd.DataFrame, on: Sequence[str]) -> list[str]:
-    """The swept parameters of laws that are not among these inputs, which all laws share."""
+    """Return the swept parameters of laws that are not among these inputs, which all laws share."""
     return [name for name in swept_inputs(table) if name.startswith("law.") and _own_name(name) not in on]
 
 
 def with_friction(table: pd.DataFrame) -> pd.DataFrame:
-    """The table with the friction coefficient of every law as ``law.mu``."""
+    """Return the table with the friction coefficient of every law as ``law.mu``."""
     known = [name for name in _FRICTION if name in table]
     return table.assign(**{_FRICTION[0]: table[known].bfill(axis=1).iloc[:, 0]}) if known else table
 
@@ -113,7 +113,7 @@ def _in_all(within: Any, name: str) -> bool:
 
 
 def _varied(table: pd.DataFrame) -> list[str]:
-    """The inputs of more than one value, in the units given."""
+    """Return the inputs of more than one value, in the units given."""
     return [name for name in given(table.columns) if table[name].nunique(dropna=False) > 1]
 
 
@@ -166,7 +166,7 @@ def _largest_difference(law: str, rows: pd.DataFrame, on: list[str], what: str) 
 
 
 def _own(rows: pd.DataFrame, row: pd.Series, on: Sequence[str]) -> dict[str, Any]:
-    """The values that only one of the two sweeps: parameters of its law."""
+    """Return the values that only one of the two sweeps: parameters of its law."""
     names = [name for name in given(rows.columns) if name.startswith("law.") and not name.endswith(_OTHER)]
     return {
         name: row[own]
@@ -207,7 +207,7 @@ class Ranking:
         return [(int(self.first[start]), start, stop - 1) for start, stop in pairwise(cuts)]
 
     def widest(self, along: str, most: int, against: int | None = None) -> list[tuple[int, int, int]]:
-        """Where the highest is furthest above the lowest, or one furthest from the one against which all are held.
+        """Find where the highest is furthest above the lowest, or one furthest from that which all are held against.
 
         Each with the point, the place of the higher one and that of the lower.
 
@@ -231,7 +231,7 @@ class Ranking:
 
     @property
     def has_gaps(self) -> bool:
-        """Whether somebody has no number at some point."""
+        """Check whether somebody has no number at some point."""
         return bool(np.isnan(self.mean).any())
 
 

@@ -1,4 +1,4 @@
-"""The answers of one chunk of scenes, as rows of the result table.
+"""Answers of one chunk of scenes, as rows of the result table.
 
 Columns that follow from a point's inputs and its mean friction, whatever the method.
 """
@@ -54,13 +54,13 @@ def _friction_free(scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
 
 
 def _presliding(law: Any) -> float:
-    """The presliding length [scene length]; NaN for a law without a finite one."""
+    """Return the presliding length [scene length]; NaN for a law without a finite one."""
     length = law.presliding() if law.memory_kind == "bristle" else math.nan
     return length if math.isfinite(length) else math.nan
 
 
 def si_scales(scene: Scene) -> dict[str, float]:
-    """The units in which the results of a scene given in SI units are to be counted: N, m/s, J, s, m."""
+    """Return the units in which the results of a scene given in SI units are to be counted: N, m/s, J, s, m."""
     assert scene.dimensional is not None
     scales = scene.dimensional.scales
     return {
@@ -87,7 +87,7 @@ def beside_in_si(found: Mapping[str, Any], scales: Mapping[str, Any]) -> dict[st
 
 
 def force_amplitude(scene: Scene) -> float:
-    """Of the drive along x1, else of the load along x2 [K_1 L]; 0 where nothing pushes."""
+    """Return the amplitude of the drive along x1, else of the load along x2 [K_1 L]; 0 where nothing pushes."""
     load = scene.transverse.load if scene.transverse is not None else None
     forces = [abs(force.phasor(scene.frequency)) for force in (scene.drive, load) if force is not None]
     return next((force for force in forces if force > 0.0), 0.0)
@@ -108,7 +108,7 @@ STATE_NUMBERS = {
     **{"period": "period", "mean_friction": "mean", "error": "error", "share": "share"},
     **{"mean_low": "low", "mean_high": "high"},
 }
-"""The columns of numbers of a state, and the fields they are from."""
+"""Columns of numbers of a state, and the fields they are from."""
 
 
 def columns_of_states(found: Sequence[FoundState]) -> dict[str, Floats]:

@@ -157,9 +157,9 @@ def _time(chunk: Chunk) -> float:
 
 
 GOES_ON = 0.7
-"""What has not told of a point for long goes on for about so many times as long."""
+"""Time that a point goes on that has not been told of for long, over the time it has taken."""
 PointKind = tuple[str, str]
-"""The labels of a law and of a method."""
+"""Labels of a law and of a method."""
 
 
 class Forecast:

@@ -48,7 +48,7 @@ def columns_answered(chunk: Chunk, answered: Sequence[Answered]) -> Part:
 
 
 def answer(chunk: Chunk) -> list[Answered]:
-    """The pieces into which refusals and failures divide a chunk. Raises BrokenPlugin."""
+    """Return the pieces into which refusals and failures divide a chunk. Raises BrokenPlugin."""
     places = list(range(len(chunk.scenes)))
     try:
         reasons = chunk.method.refusals(chunk.scenes, chunk.law)
@@ -101,12 +101,12 @@ def _reason(problem: BaseException) -> str:
 
 
 def _broken(law: str) -> str:
-    """The reason of a point that failed in a law of another package."""
+    """Return the reason of a point that failed in a law of another package."""
     return MARK + "; ".join(line.strip() for line in law.splitlines())
 
 
 def _believable(answers: Answers, law: FrictionLaw, size: int) -> Answers:
-    """The answers, every ``ok`` without a number made ``failed``. Raises TypeError for a wrong count."""
+    """Return the answers, every ``ok`` without a number made ``failed``. Raises TypeError for a wrong count."""
     lists: list[Sized | None] = [answers.status, answers.reason, answers.model, answers.error_kind]
     lists += [answers.mean, answers.error, answers.unique, *(getattr(answers, name) for name in OWN)]
     counts = {len(part) for part in lists if part is not None}
@@ -124,13 +124,13 @@ def _believable(answers: Answers, law: FrictionLaw, size: int) -> Answers:
 
 
 FROM_METHODS = tuple(name for name in RESULTS if name not in TEXT and name not in DERIVED)
-"""The columns of numbers that hang on what a method found."""
+"""Columns of numbers that hang on what a method found."""
 OWN = "period", "mean_low", "mean_high", "window", "seconds"
-"""The columns that answers hold as arrays, or leave out."""
+"""Columns that answers hold as arrays, or leave out."""
 
 
 def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection[str]) -> dict[str, Floats]:
-    """Of these columns all that a method's answers give, whatever the method: the one place where they are read.
+    """Return those of these columns that a method's answers give: the one place where answers are read.
 
     Orbits are made, and multipliers found, where one of the columns needs them.
     """
@@ -188,13 +188,13 @@ def _parts(chunk: Chunk, piece: Answered) -> list[tuple[list[int], Part]]:
 
 
 def text_columns(answers: Answers) -> dict[str, list[str]]:
-    """The columns of words, by the names they have in the table."""
+    """Return the columns of words, by the names they have in the table."""
     names = "status", "reason", "model", "error_kind"
     return {name: list(getattr(answers, name)) for name in names} | {"unique": _unique(answers)}
 
 
 def _unique(answers: Answers) -> list[str]:
-    """Whether the state is the only one: of an ok answer what its method says, of an open one that it is not."""
+    """Tell whether the state is the only one: what its method says of an ok answer, no of an open one."""
     told = answers.unique or [""] * len(answers.status)
     said = {"not_unique": NOT_UNIQUE}
     return [
@@ -204,12 +204,12 @@ def _unique(answers: Answers) -> list[str]:
 
 
 def _noted(reasons: list[str], notes: list[str]) -> list[str]:
-    """The reasons, with why a number beside them is empty."""
+    """Return the reasons, with why a number beside them is empty."""
     return ["; ".join(filter(None, both)) for both in zip(reasons, notes, strict=True)]
 
 
 def _kept(chunk: Chunk, piece: Answered) -> dict[str, KeptRows]:
-    """What stands beside the table: the states of points that have several, and the orbits that a study keeps."""
+    """Return the tables beside the results: the states of points that have several, and the orbits that are kept."""
     task, answers, kept = chunk.task, piece.answers, dict[str, KeptRows]()
     for at, status in enumerate(answers.status):
         if status == "not_unique" and (states := answers.states(at)):

@@ -28,7 +28,7 @@ class NoMeanError(RuntimeError):
 
 
 class OrbitOf:
-    """The orbit of one steady state, made when first asked for, or when it goes to another process."""
+    """Orbit of one steady state, made when first asked for, or when it goes to another process."""
 
     def __init__(self, make: Callable[[int], Orbit | None], scene: Scene, law: FrictionLaw) -> None:
         self._make, self._scene, self._law = make, scene, law
@@ -206,7 +206,7 @@ class SteadyState:
     motion: OrbitOf | MotionOnSprings | None = field(default=None, compare=False)
 
     def __repr__(self) -> str:
-        """The mean with its error, or what there is instead of one and why."""
+        """Return the mean with its error, or what there is instead of one and why."""
         if self.status == "ok":
             said = f"mean_friction={self.mean_friction!r}, error={self.error:.1e}"
             return f"SteadyState(ok, {said}{f'; {self.reason}' if self.reason else ''})"

@@ -87,7 +87,7 @@ def _motion_in(found: Answered, chunk: Chunk) -> OrbitOf:
 
 
 def steady_states(scenes: Scenes, law: FrictionLaw, tolerance: float, columns: Sequence[str]) -> Part:
-    """Of one law along belt speeds, which rise: for what asks hundreds of times, on its own thread.
+    """Solve one law along rising belt speeds, on the thread of the caller, who asks hundreds of times.
 
     Raises BrokenPlugin.
     """
@@ -97,7 +97,7 @@ def steady_states(scenes: Scenes, law: FrictionLaw, tolerance: float, columns: S
 
 
 def _in_si(part: Part, scene: Scene) -> dict[str, float]:
-    """The columns in SI units; none where the scene is not given in them."""
+    """Return the columns in SI units; none where the scene is not given in them."""
     if scene.dimensional is None:
         return {}
     found = {name: part.numbers.get(name, np.full(1, np.nan)) for name in RESULTS}

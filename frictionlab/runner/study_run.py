@@ -53,7 +53,7 @@ class UnsavedError(SaveError):
 
 
 class RunWays(NamedTuple):
-    """How to go about a run: as ``fl.run`` is told."""
+    """Options of a run, as ``fl.run`` is told."""
 
     overrides: Sequence[str] = ()
     existing: Existing = "reuse"

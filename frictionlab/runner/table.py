@@ -1,4 +1,4 @@
-"""The one tidy table of a run: inputs first, then what was found, one row per scene, law and method."""
+"""One tidy table of a run: inputs first, then what was found, one row per scene, law and method."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from frictionlab.values.quantities import Floats
 
 
 class Inputs(NamedTuple):
-    """The input columns of each row; scales: the units of its results, for scenes in SI units."""
+    """Input columns of each row; scales: the units of its results, for scenes in SI units."""
 
     columns: dict[str, ColumnValues]
     size: int
@@ -48,7 +48,7 @@ def inputs(curves: Sequence[StudyCurve]) -> Inputs:
 
 
 class InputColumns:
-    """The input columns of a study's curves: of all rows or of some at a time, each time the same columns."""
+    """Input columns of a study's curves: of all rows or of some at a time, each time the same columns."""
 
     def __init__(self, curves: Sequence[StudyCurve]) -> None:
         self._curves = curves
@@ -61,7 +61,7 @@ class InputColumns:
         self._kinds = [_kinds(records) for _, records in self._records]
 
     def of(self, chosen: range) -> Inputs:
-        """Of the curves at these places, whose rows are all rows from the first of them to the last."""
+        """Return the inputs of the curves at these places, whose rows are all rows from the first to the last."""
         curves = self._curves[chosen.start : chosen.stop]
         first = min(each.rows.start for each in curves)
         where = [slice_of(each.rows, first) for each in curves]
@@ -83,7 +83,7 @@ Told = TypeVar("Told")
 def _once(
     curves: Sequence[StudyCurve], part: Callable[[StudyCurve], Any], told: Callable[[Any], Told]
 ) -> list[Told]:
-    """What is told of a part of each curve, made once of each different one."""
+    """Return what is told of a part of each curve, made once of each different one."""
     found = {id(part(each)): part(each) for each in curves}
     made = {key: told(one) for key, one in found.items()}
     return [made[id(part(each))] for each in curves]
@@ -95,7 +95,7 @@ def slice_of(rows: range, first: int = 0) -> slice:
 
 
 def _scaled(curve: StudyCurve) -> dict[str, Any]:
-    """The parameters of its law that were given in SI units in the scales of the scene."""
+    """Return the parameters of its law that were given in SI units in the scales of the scene."""
     si = curve.scenes.scene.dimensional
     return {} if si is None else _cells(scaled_parameters(curve.given_law, si.scales))
 
@@ -123,7 +123,7 @@ def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _kinds(records: list[dict[str, Any]]) -> dict[str, bool]:
-    """The names in records, and whether all their values are numbers."""
+    """Return the names in records, and whether all their values are numbers."""
     found: dict[str, bool] = {}
     for record in {id(record): record for record in records}.values():
         for name, value in record.items():
@@ -146,7 +146,7 @@ def _spread(
 
 
 def value_in(cells: Mapping[str, Any], name: str) -> Any:
-    """The value of this name, one or several, of a row's cells; None where they are empty."""
+    """Return the value of this name, one or several, of a row's cells; None where they are empty."""
     given = {key: cells[key] for key in cells if key == name or key.startswith(f"{name}[")}
     filled = {key: value for key, value in given.items() if value is not None and value == value}
     return filled[name] if name in filled else [*filled.values()] or None
@@ -172,7 +172,7 @@ def result_frame(answers: pa.Table, given: Inputs, names: Collection[str]) -> pd
 
 
 def whole(table: pd.DataFrame) -> pd.DataFrame:
-    """The table with every result column, empty where it was not asked for."""
+    """Return the table with every result column, empty where it was not asked for."""
     if all(name in table for name in RESULTS):
         return table
     given = [name for name in table.columns if name not in RESULTS and name not in SI]
@@ -195,7 +195,7 @@ def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
 
 
 def status_counts(table: pd.DataFrame) -> dict[str, int]:
-    """How many rows have each status, the most frequent first."""
+    """Return how many rows have each status, the most frequent first."""
     return {str(name): int(count) for name, count in table["status"].value_counts().items()}
 
 
@@ -220,7 +220,7 @@ def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def _plain(value: Any) -> Any:
-    """The value for JSON, which has neither NaN nor infinity."""
+    """Return the value for JSON, which has neither NaN nor infinity."""
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 

@@ -1,4 +1,4 @@
-"""The files of a table: written piece by piece, whole in the end or not at all, and read that way."""
+"""Files of a table: written piece by piece, whole in the end or not at all, and read that way."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class TableFiles:
 
 
 def _with_text(table: pd.DataFrame) -> pa.Schema:
-    """The schema of a table, a column of objects without any as one of text: later rows may have some."""
+    """Return the schema of a table, a column of objects without any as one of text: later rows may have some."""
     schema = pa.Schema.from_pandas(table, preserve_index=False)
     for place, name in enumerate(schema.names):
         if table[name].dtype == object and table[name].isna().all():
@@ -111,7 +111,7 @@ def read_pieces(file: Path) -> Iterator[pd.DataFrame]:
 
 
 def rows_of_file(file: Path) -> int:
-    """How many rows the table of a file has."""
+    """Return how many rows the table of a file has."""
     with file.open("rb") as opened:
         return int(pq.read_metadata(opened).num_rows)
 

@@ -35,7 +35,7 @@ _USUAL, _OTHERS = 0.5, (0.25, 1.5)
 
 
 class Warmed(NamedTuple):
-    """The kernels of a law for a kind of scene: how many were compiled, and in how long [s]."""
+    """Kernels of a law for a kind of scene: how many were compiled, and in how long [s]."""
 
     law: str
     scene: str
@@ -81,7 +81,7 @@ def forms(kind: type[FrictionLaw]) -> list[FrictionLaw]:
 
 
 def _form(law: FrictionLaw) -> tuple[Any, ...]:
-    """What kernels are chosen by."""
+    """Return what kernels are chosen by."""
     return *law.structure(), isinstance(law, BristleLaw) and law.exact_path()
 
 

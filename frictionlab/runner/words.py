@@ -39,12 +39,12 @@ TOLD: dict[str, tuple[str, str]] = {
     "between belt speeds .* and (NUMBER)": ("velocity", "m/s"),
     "; none at (NUMBER)": ("velocity", "m/s"),
 }
-"""Where sentences have numbers with a dimension, the scale of these and their SI unit."""
+"""Numbers with a dimension in sentences: their scale and SI unit."""
 _PATTERNS = {re.compile(words.replace("NUMBER", _NUMBER)): scale for words, scale in TOLD.items()}
 
 
 def in_si_words(sentence: str, scales: Mapping[str, float]) -> str:
-    """The sentence with its lengths and speeds in SI units; as it is without scales."""
+    """Return the sentence with its lengths and speeds in SI units; as it is without scales."""
     for pattern, (scale, unit) in _PATTERNS.items():
         if scale in scales and (found := pattern.search(sentence)):
             value = float(found[1]) * scales[scale]
@@ -55,7 +55,7 @@ def in_si_words(sentence: str, scales: Mapping[str, float]) -> str:
 
 
 def column_in_si_words(column: Any, scales: Mapping[str, Any]) -> Any:
-    """The same of a column of sentences, by columns of scales."""
+    """Return the same of a column of sentences, by columns of scales."""
     if not scales:
         return column
     used = [name for name in ("length", "velocity") if name in scales]

@@ -1,4 +1,4 @@
-"""The axes of a study's grid: along each, one swept value changes or several advance together.
+"""Axes of a study's grid: along each, one swept value changes or several advance together.
 
 A range of a sweep: its ends, how many values and how they are spaced; the values are built on demand.
 """
@@ -62,7 +62,7 @@ class SweepRange(_Ends):
         return self._logarithmic() if self.spacing == "log" else self._linear()
 
     def resolved(self) -> dict[str, Any]:
-        """The entry of a study file; linear spacing is left out."""
+        """Return the entry of a study file; linear spacing is left out."""
         return self.model_dump(exclude_defaults=True)
 
     def _linear(self) -> tuple[float, ...]:
@@ -81,9 +81,9 @@ class SweepRange(_Ends):
 
 
 ENDS = "start", "stop"
-"""The keys of its ends."""
+"""Keys of its ends."""
 WITHIN = "within"
-"""The key of a range out of which belt speeds are chosen as a run goes."""
+"""Key of a range out of which belt speeds are chosen as a run goes."""
 FINEST = 10.0
 """Tolerances within which straight lines may be asked to be: a point's own error is as large as that."""
 MOST_CHOSEN = 100_000
@@ -114,16 +114,16 @@ class SpeedRange(_Ends):
         return self._even(FIRST_SPEEDS + math.ceil(0.6 / math.sqrt(self.within)))
 
     def resolved(self) -> dict[str, Any]:
-        """The entry of a study file."""
+        """Return the entry of a study file."""
         return self.model_dump()
 
 
 GridValue = float | str | Form
-"""What a sweep runs over: numbers, words or waveforms."""
+"""Value of a sweep: a number, a word or a waveform."""
 LINKED = "linked"
-"""The key of a sweep under which lists advance together."""
+"""Key of a sweep under which lists advance together."""
 FRICTION = "friction"
-"""The path of a sweep that sets mu or mu_kinetic of every law."""
+"""Path of a sweep that sets mu or mu_kinetic of every law."""
 STATIC = "mu_static"
 SCENE = "scene."
 
@@ -138,18 +138,18 @@ class Axis:
         return len(next(iter(self.values.values())))
 
     def of(self, owner: str) -> dict[str, tuple[GridValue, ...]]:
-        """Of what belongs to ``scene.`` or ``laws.<label>.``, the values by what comes after that."""
+        """Return the values of what belongs to ``scene.`` or ``laws.<label>.``, by what comes after that."""
         inside = {path: values for path, values in self.values.items() if owner_of(path) == owner}
         return {path.removeprefix(owner): values for path, values in inside.items()}
 
     @property
     def is_of_scene(self) -> bool:
-        """Whether it varies the scene, be it together with laws."""
+        """Check whether it varies the scene, be it together with laws."""
         return any(path.startswith(SCENE) for path in self.values)
 
     @property
     def is_of_speed(self) -> bool:
-        """Whether belt speed alone varies along it."""
+        """Check whether belt speed alone varies along it."""
         return len(self.values) == 1 and not self.values.keys().isdisjoint(BELT_SPEEDS)
 
     def thinned(self) -> Axis:
@@ -158,7 +158,7 @@ class Axis:
 
 
 def axes_of(sweep: Mapping[str, tuple[GridValue, ...]], links: Sequence[tuple[str, ...]]) -> tuple[Axis, ...]:
-    """The axes of sweeps, in their order. links: the paths that advance together, which follow one another."""
+    """Return the axes of sweeps, in their order. links: the paths that advance together, which follow one another."""
     linked = {path: entry for entry in links for path in entry}
     entries = dict.fromkeys(linked.get(path, (path,)) for path in sweep)
     return tuple(Axis({path: sweep[path] for path in entry}) for entry in entries)
@@ -170,17 +170,17 @@ def places(axes: Sequence[Axis]) -> Iterator[tuple[int, ...]]:
 
 
 def point_at(axes: Sequence[Mapping[str, tuple[GridValue, ...]]], at: Sequence[int]) -> dict[str, GridValue]:
-    """The value of everything at these places along axes."""
+    """Return the value of everything at these places along axes."""
     return {
         name: values[place] for axis, place in zip(axes, at, strict=True) for name, values in axis.items()
     }
 
 
 def grid_points(axes: Sequence[Axis]) -> int:
-    """How many points a grid of axes has."""
+    """Return how many points a grid of axes has."""
     return math.prod(map(len, axes))
 
 
 def owner_of(path: str) -> str:
-    """The part that a sweep varies: ``scene.`` or ``laws.<label>.`` (a label may contain points); '' for friction."""
+    """Part that a sweep varies: ``scene.`` or ``laws.<label>.`` (a label may contain points); '' for friction."""
     return SCENE if path.startswith(SCENE) else f"{path.rpartition('.')[0]}." if "." in path else ""

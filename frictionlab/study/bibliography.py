@@ -1,4 +1,4 @@
-"""The publications that laws, methods and studies cite: BibTeX entries, and those that a text names.
+"""Publications that laws, methods and studies cite: BibTeX entries, and those that a text names.
 
 A text names a publication by its authors and year, as in "Dahl (1968)", "Bo & Pavelescu (1982)" or, of three and more
 authors, "Dupont et al. (2002)".
@@ -26,7 +26,7 @@ class Publication:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The citations by which a text may name it; none without authors."""
+        """Return the citations by which a text may name it; none without authors."""
         given = self.fields.get("author", "")
         if not given:
             return ()
@@ -52,7 +52,7 @@ class Publication:
 
 
 def _family(author: str) -> str:
-    """The family name, of ``Family, Given``, of ``Given Family`` or of a name in braces."""
+    """Return the family name, of ``Family, Given``, of ``Given Family`` or of a name in braces."""
     if "," in author or author.startswith("{"):
         return _plain(author).partition(",")[0]
     return author.split()[-1]
@@ -64,12 +64,12 @@ def _plain(text: str) -> str:
 
 @cache
 def bibliography() -> tuple[Publication, ...]:
-    """The publications cited by the laws and methods of frictionlab."""
+    """Return the publications cited by the laws and methods of frictionlab."""
     return read_bibtex(files("frictionlab.study").joinpath("bibliography.bib").read_text(encoding="utf-8"))
 
 
 def publications(text: str, bibtex: str) -> list[Publication]:
-    """The publications that a text names, and its own entries, which replace those of frictionlab's bibliography."""
+    """Publications that a text names, and its own entries, which replace those of frictionlab's bibliography."""
     brought = read_bibtex(bibtex)
     taken = {name for each in brought for name in each.names}
     known = [*brought, *(each for each in bibliography() if taken.isdisjoint(each.names))]
@@ -107,7 +107,7 @@ _ENTRY = re.compile(rf"@(\w+)\s*\{{\s*([^\s,{{}}]+)\s*(?:,\s*(?:\w+\s*=\s*(?:{_V
 
 
 def read_bibtex(bibtex: str) -> tuple[Publication, ...]:
-    """The entries of BibTeX text; text between them is comment. Raises ValueError for a broken entry."""
+    """Return the entries of BibTeX text; text between them is comment. Raises ValueError for a broken entry."""
     if not isinstance(bibtex, str):
         raise ValueError(f"must be one text of BibTeX entries, not a {type(bibtex).__name__}")
     if "@" in (left := _ENTRY.sub("", bibtex)):

@@ -37,7 +37,7 @@ Fault = str
 
 
 def faults_of_samples(law: type[FrictionLaw]) -> Iterator[Fault]:
-    """The faults of a law when it is built and called with sample parameters, one after the other."""
+    """Yield the faults of a law when it is built and called with sample parameters, one after the other."""
     for parameters in _samples(law):
         try:
             made = law.model_validate(parameters)
@@ -67,7 +67,7 @@ def _optional(law: type[FrictionLaw]) -> list[str]:
 
 
 def faults_of_methods(given: FrictionLaw) -> Iterator[Fault]:
-    """The faults of the interfaces' methods that the law's author wrote, on the line and in the plane."""
+    """Yield the faults of the interfaces' methods that the law's author wrote, on the line and in the plane."""
     law = given.under_load(1.0)
     if wrong := _fault_of_error(law, "its properties", law.numbers):
         yield wrong
@@ -80,7 +80,7 @@ def faults_of_methods(given: FrictionLaw) -> Iterator[Fault]:
 
 
 def overridden_methods(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
-    """The public methods of the interfaces that a law overrides, each with the method of the interface."""
+    """Return the public methods of the interfaces that a law overrides, each with the method of the interface."""
     interfaces = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and not from_outside(kind)]
     said: dict[str, Any] = {}
     for kind in reversed(interfaces):
@@ -134,7 +134,7 @@ def _fault_of_call(law: FrictionLaw, name: str, interface: Any, arguments: dict[
 
 
 def _fault_of_error(law: FrictionLaw, what: str, call: Callable[[], object]) -> Fault | None:
-    """The fault of a call that raises; arithmetic errors, which may depend on the numbers, are no fault."""
+    """Return the fault of a call that raises; arithmetic errors, which may depend on the numbers, are no fault."""
     try:
         call()
     except (ArithmeticError, ValueError):
@@ -163,20 +163,20 @@ def _is_a(answer: Any, kind: str, planar: bool) -> bool:
 
 
 class Home(NamedTuple):
-    """The origin of a law or method, and the remedy if it is broken, as sentences."""
+    """Origin of a law or method, and the remedy if it is broken, as sentences."""
 
     name: str
     remedy: str
 
     def broken(self, what: str, why: BaseException | None = None) -> BrokenPlugin:
-        """The error for a broken law or method."""
+        """Return the error for a broken law or method."""
         problem = BrokenPlugin(f"{self.name}: {what}\n{self.remedy}")
         problem.__cause__ = why
         return problem
 
 
 def is_own(door: EntryPoint) -> bool:
-    """Whether frictionlab itself brings it."""
+    """Check whether frictionlab itself brings it."""
     return door.dist is not None and door.dist.name == "frictionlab"
 
 
@@ -186,7 +186,7 @@ def package(door: EntryPoint) -> str:
 
 
 def home_of(door: EntryPoint) -> Home:
-    """The origin of an installed law or method."""
+    """Return the origin of an installed law or method."""
     what = door.group.rpartition(".")[2].removesuffix("s")
     whose = f" of package {package(door)}" if package(door) else ""
     name = door.dist.name if door.dist is not None else "its package"
@@ -194,7 +194,7 @@ def home_of(door: EntryPoint) -> Home:
 
 
 def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type[Method]) -> Any:
-    """The law or method behind the entry points of one name. Raises BrokenPlugin."""
+    """Return the law or method behind the entry points of one name. Raises BrokenPlugin."""
     # a plugin never replaces a law or method of frictionlab
     door, *others = [door for door in doors if is_own(door)] or doors
     if others:
@@ -210,7 +210,7 @@ def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type
 
 
 def describe_clash(doors: Sequence[EntryPoint]) -> str:
-    """The message that several packages define the same name."""
+    """Return the message that several packages define the same name."""
     owners = " and ".join(f"{package(door) or 'a package'} ({door.value})" for door in doors)
     what = doors[0].group.rpartition(".")[2].removesuffix("s")
     return f"{what} '{doors[0].name}' is defined by {owners}"
@@ -230,7 +230,7 @@ def _load(door: EntryPoint, home: Home) -> Any:
 
 
 def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
-    """The error for a module that cannot be imported."""
+    """Return the error for a module that cannot be imported."""
     files = outside_files(problem)
     if isinstance(problem, ModuleNotFoundError) and problem.name:
         what = f"needs '{problem.name}', which is not installed{innermost_line(problem, files) or ''}"
@@ -240,7 +240,7 @@ def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
 
 
 def check_class(loaded: Any, home: Home) -> Any:
-    """The class, after a few trial calls. Raises BrokenPlugin."""
+    """Return the class, after a few trial calls. Raises BrokenPlugin."""
     try:
         wrong = next(_faults(loaded), "")
     except Exception as problem:

@@ -1,4 +1,4 @@
-"""What a study expects of its table: the lines under ``expect``, and their check against its columns."""
+"""Expectations of a study of its table: the lines under ``expect``, and their check against its columns."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _COMPARABLE = [
     name for name in (*columns.RESULTS, *columns.SI, *columns.CURVE_MEASURES) if name not in columns.TEXT
 ]
 WhereValue = str | float | list[str | float] | dict[str, float]
-"""What an input must be: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
+"""Wanted value of an input: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
 COMPARISONS = "equals", "below", "above"
 _GO_WITH = {
     "status": (),
@@ -54,7 +54,7 @@ _GO_WITH = {
     "shape": ("measure",),
     "column": (*COMPARISONS, "within", "minus", "over"),
 }
-"""The four kinds of claim, each with the keys that go with it."""
+"""Four kinds of claim, each with the keys that go with it."""
 
 
 class Expectation(Record):
@@ -96,7 +96,7 @@ class Expectation(Record):
 
     @property
     def of_curves(self) -> bool:
-        """Whether it speaks of whole curves."""
+        """Check whether it speaks of whole curves."""
         return self.shape is not None or self.column in columns.CURVE_MEASURES
 
     @model_validator(mode="after")
@@ -124,14 +124,14 @@ class Expectation(Record):
         return self
 
     def resolved(self) -> dict[str, Any]:
-        """The entry of a study file."""
+        """Return the entry of a study file."""
         told = {name: natural(value) for name, value in self if value is not None and value != ""}
         return told | ({"max_difference": list(self.max_difference)} if self.max_difference else {})
 
 
 @dataclass(frozen=True)
 class Table:
-    """The columns of the table of a study: text inputs with their values, number inputs, results, swept inputs.
+    """Columns of the table of a study: text inputs with their values, number inputs, results, swept inputs.
 
     words: the words and waveforms of the scene, with their values. belt_speed: the column of the belt speed,
     nondimensional or in SI units; units: of the parameters of laws, where the scene is in SI units.
@@ -147,7 +147,7 @@ class Table:
 
 
 def of_table(given: Expectation, path: KeyPath, table: Table, notes: Notes) -> Expectation:
-    """The expectation as the table has its names and numbers; what it has not is noted."""
+    """Return the expectation as the table has its names and numbers; what it has not is noted."""
     said: dict[str, Any] = {"where": _where(given.where, (*path, "where"), table, notes, _wanted)}
     beside = {key: value for key in ("minus", "over") if (value := getattr(given, key)) is not None}
     said |= {key: _where(value, (*path, key), table, notes, _input) for key, value in beside.items()}
@@ -173,7 +173,7 @@ def of_table(given: Expectation, path: KeyPath, table: Table, notes: Notes) -> E
 def _where(
     given: Any, path: KeyPath, table: Table, notes: Notes, read: Callable[..., WhereValue | None]
 ) -> dict[str, WhereValue]:
-    """The input columns and values that select rows; read: of one of them what it must be."""
+    """Return the input columns and values that select rows; read: of one of them what it must be."""
     where: dict[str, WhereValue] = {}
     for key, value in (notes.mapping(given, path) or {}).items():
         if key not in table.texts and key not in table.words and column_of(key) not in table.numbers:
@@ -186,7 +186,7 @@ def _where(
 
 
 def _wanted(given: Any, path: KeyPath, key: str, table: Table, notes: Notes) -> WhereValue | None:
-    """What an input of rows must be: one value, one of several, or a number within a range."""
+    """Return what an input of rows must be: one value, one of several, or a number within a range."""
     if isinstance(given, list):
         read = [_input(value, (*path, index), key, table, notes) for index, value in enumerate(given)]
         return [value for value in read if value is not None]
@@ -245,7 +245,7 @@ def _number(value: Any, path: KeyPath, column: str, notes: Notes) -> float | Non
 
 
 def _as_in_scene(column: str, value: Any) -> tuple[Any, str | None, str]:
-    """The value as the scene holds it in the field of this column, what is wrong with it and what was meant."""
+    """Value as the scene holds it in the field of this column, what is wrong with it and what was meant."""
     *steps, key = column.removeprefix("scene.").split(".")
     record = record_at(Scene, tuple(steps))
     assert record is not None
@@ -270,7 +270,7 @@ def _column(given: str, path: KeyPath, table: Table, notes: Notes) -> None:
 def result_column(
     given: Any, path: KeyPath, results: Sequence[str], notes: Notes, what: str = "result column"
 ) -> str | None:
-    """The name of one of these result columns; None, noted, where it is none."""
+    """Return the name of one of these result columns; None, noted, where it is none."""
     if not isinstance(given, str) or given not in results:
         hint = did_you_mean(given, results) if isinstance(given, str) else ""
         in_si = given in columns.SI if isinstance(given, str) else False

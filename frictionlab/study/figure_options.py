@@ -1,4 +1,4 @@
-"""How a study wants its figures drawn: the keys of ``figures``.
+"""Options of figures: the keys of ``figures`` of a study.
 
 What a study wants level lines of: the key ``boundaries``, and the two swept numbers they are over.
 """
@@ -20,7 +20,7 @@ from frictionlab.values.notes import Mistake, Notes, WrongValues
 from frictionlab.values.quantities import gone
 
 WIDTHS = {"single": 85.0, "double": 175.0}
-"""Of a journal's column and page [mm]."""
+"""Widths of a journal's column and page [mm]."""
 FORMATS = "svg", "png", "pdf"
 FigureName = Literal[
     "bifurcation",
@@ -46,7 +46,7 @@ NO_INSET = "closer views are gone: narrow the sweep, or draw the figure of diffe
 
 
 class FigureOptions(Record):
-    """How figures are drawn.
+    """Options of figures.
 
     normalized: mean over steady sliding friction against belt speed over V_lin
     against: label of the law that others are subtracted from in the figure of differences; Coulomb's where left out,
@@ -83,7 +83,7 @@ class FigureOptions(Record):
         return "figures"
 
     def resolved(self) -> dict[str, Any]:
-        """The entry of a study file: what differs from the defaults."""
+        """Return the entry of a study file: what differs from the defaults."""
         return self.model_dump(mode="json", exclude_defaults=True)
 
 
@@ -119,13 +119,13 @@ def check_boundaries(given: Mapping[str, Any], sweeps: Sweeps, notes: Notes) -> 
 
 
 def swept_numbers(study: StudyGrid) -> tuple[Axis, Axis]:
-    """The two axes of a study that has boundaries beside that of belt speed."""
+    """Return the two axes of a study that has boundaries beside that of belt speed."""
     one, other = (axis for axis in study.axes if not axis.is_of_speed)
     return one, other
 
 
 def columns_swept(axis: Axis, law: LawChoice) -> dict[str, tuple[GridValue, ...]]:
-    """The columns of the table that have numbers of an axis in the rows of a law, and these numbers."""
+    """Return the columns of the table that have numbers of an axis in the rows of a law, and these numbers."""
     own = [(SCENE, axis.of(SCENE)), ("law.", of_law(axis, law))]
     return {f"{owner}{name}": values for owner, found in own for name, values in found.items()}
 

@@ -1,4 +1,4 @@
-"""The grid of a study: every scene, law and method of its sweeps, as the rows and curves of one table."""
+"""Grid of a study: every scene, law and method of its sweeps, as the rows and curves of one table."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class StudyCase:
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
+        """Return the law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
         return law_in_scene(self.given_law, self.scene)
 
 
@@ -73,12 +73,12 @@ class StudyCurve:
 
     @property
     def labels(self) -> tuple[str, str]:
-        """Of the law and the method: points of equal ones take about as long as each other."""
+        """Labels of the law and the method: points of equal ones take about as long as each other."""
         return self.law_label, self.method.label
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
+        """Return the law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
         return law_in_scene(self.given_law, self.scenes.scene)
 
 
@@ -129,7 +129,7 @@ class StudyGrid:
         return [found[row] for row in range(len(found))]
 
     def curves(self) -> Iterator[StudyCurve]:
-        """The full grid, a curve at a time: every law at every value of its sweeps, by every method, in every scene.
+        """Full grid, a curve at a time: every law at every value of its sweeps, by every method, in every scene.
 
         In a table the belt speed runs where the study has it among its sweeps.
         """
@@ -181,15 +181,15 @@ class StudyGrid:
 
     @property
     def chosen_range(self) -> SpeedRange | None:
-        """The range out of which belt speeds are chosen as a run goes, if they are."""
+        """Return the range out of which belt speeds are chosen as a run goes, if they are."""
         return next((each for each in self.ranges.values() if isinstance(each, SpeedRange)), None)
 
     def with_speeds(self, speeds: Sequence[Iterable[float]]) -> Self:
-        """The study with these belt speeds chosen, of one scene after another in the order of ``scenes_along``."""
+        """Study with these belt speeds chosen, of one scene after another in the order of ``scenes_along``."""
         return replace(self, chosen=tuple(tuple(each) for each in speeds))
 
     def foreseen(self) -> Self:
-        """The study with about as many belt speeds as will be chosen; itself where none are."""
+        """Return the study with about as many belt speeds as will be chosen; itself where none are."""
         along = self.chosen_range
         return self if along is None else self.with_speeds([along.about()] * len(self.scenes_along))
 
@@ -201,7 +201,7 @@ class StudyGrid:
         return StudyError([Mistake(name, None, "sweep", f"a point of the grid cannot be built: {what}")])
 
     def _laws_along(self, choice: LawChoice, own: dict[str, GridValue]) -> list[FrictionLaw]:
-        """The law with these values, in every scene of the grid: another one where its values advance with a scene's.
+        """Law with these values, in every scene of the grid: another one where its values advance with a scene's.
 
         Raises StudyError where one cannot be built.
         """
@@ -217,7 +217,7 @@ class StudyGrid:
         return [made[tuple(point.items())] for point in points]
 
     def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
-        """The different laws that result in the scales and under the normal loads of the scenes."""
+        """Return the different laws that result in the scales and under the normal loads of the scenes."""
         own, found = self.own_axes(choice), set[tuple[FrictionLaw, Units | None, float | None]]()
         for at in places(own):
             laws = self._laws_along(choice, point_at([of_law(axis, choice) for axis in own], at))
@@ -228,12 +228,12 @@ class StudyGrid:
 
     @cached_property
     def in_words(self) -> dict[str, dict[str, str]]:
-        """What figures call laws and methods, by their labels."""
+        """Return what figures call laws and methods, by their labels."""
         return {"law": _told_apart(self.laws), "method": _told_apart(self.methods)}
 
     @cached_property
     def units(self) -> dict[str, ShownUnit]:
-        """The units in which numbers of a scene in SI units and of its laws were written, by columns of the table."""
+        """Units in which numbers of a scene in SI units and of its laws were written, by columns of the table."""
         values: dict[str, Any] = {f"{SCENE}{path}": each for path, each in self.scene.given_values().items()}
         for law in self.laws:
             values |= {f"law.{name}": value for name, value in law.parameters.items()}
@@ -245,7 +245,7 @@ class StudyGrid:
 
     @cached_property
     def axes(self) -> tuple[Axis, ...]:
-        """The axes of the grid."""
+        """Return the axes of the grid."""
         return axes_of(self.sweep, self.links)
 
     @cached_property
@@ -264,7 +264,7 @@ class StudyGrid:
         return tuple(self.axes[place] for place in dict.fromkeys(sorted(found)))
 
     def swept_parameters(self, choice: LawChoice) -> dict[str, tuple[GridValue, ...]]:
-        """The values that sweeps give the parameters of a law."""
+        """Return the values that sweeps give the parameters of a law."""
         return {name: values for axis in self.axes for name, values in of_law(axis, choice).items()}
 
     @cached_property
@@ -278,14 +278,14 @@ class StudyGrid:
 
 
 def grid_size(grid: StudyGrid) -> int:
-    """The number of rows of the table."""
+    """Return the number of rows of the table."""
     laws = sum(grid_points(grid.own_axes(law)) for law in grid.laws)
     points = sum(map(len, grid.chosen)) if grid.chosen else grid_points(grid.scene_axes)
     return points * laws * len(grid.methods)
 
 
 def _told_apart(choices: Sequence[LawChoice | MethodChoice]) -> dict[str, str]:
-    """The words of each by its label; the label where another has the same words."""
+    """Return the words of each by its label; the label where another has the same words."""
     words = [each.in_words for each in choices]
     return {
         each.label: said if words.count(said) == 1 else each.label
@@ -294,13 +294,13 @@ def _told_apart(choices: Sequence[LawChoice | MethodChoice]) -> dict[str, str]:
 
 
 def of_law(axis: Axis, choice: LawChoice) -> dict[str, tuple[GridValue, ...]]:
-    """What varies along an axis of the parameters of a law."""
+    """Return what varies along an axis of the parameters of a law."""
     found = axis.of(f"laws.{choice.label}.")
     return found | choice.under_friction(axis.values[FRICTION]) if FRICTION in axis.values else found
 
 
 def _speeds(scene: Scene, along: Axis | None) -> NDArray[np.float64]:
-    """The belt speeds of an axis, else that of the scene, in the units in which the scene is given."""
+    """Return the belt speeds of an axis, else that of the scene, in the units in which the scene is given."""
     si = scene.dimensional
     own: tuple[GridValue, ...] = (scene.belt_speed if si is None else si.belt_speed_m_per_s,)
     return np.array(own if along is None else next(iter(along.values.values())), dtype=np.float64)

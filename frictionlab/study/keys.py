@@ -1,4 +1,4 @@
-"""The keys of a study file that say what is asked of its table: everything but scene, laws, methods and sweep."""
+"""Keys of a study file that say what is asked of its table: everything but scene, laws, methods and sweep."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STUDY_KEYS = (
 KINDS_OF_FILE = ".csv", ".tsv", ".txt", ".parquet"
 """Ends of names; those of text may be followed by .gz."""
 SLIP_ALONE: dict[str, Any] = {"belt_speed": 1, "slip": {"velocity_amplitude": 1, "frequency": 1}}
-"""The scene of a study of slip over time, which needs none: nothing of it is used by a fit."""
+"""Scene of a study of slip over time, which needs none: nothing of it is used by a fit."""
 
 
 def _listed(given: Any) -> Any:
@@ -39,14 +39,14 @@ _Alone = BeforeValidator(_listed), Field(min_length=1, json_schema_extra=_or_alo
 
 
 def _is_measured(name: str) -> str:
-    """The name of a file of measurements. Raises ValueError for another end."""
+    """Return the name of a file of measurements. Raises ValueError for another end."""
     if not name.removesuffix(".gz").endswith(KINDS_OF_FILE):
         raise ValueError(f"must be a file {', '.join(KINDS_OF_FILE)} (text may be .gz, too)")
     return name
 
 
 class Keep(Record):
-    """What is written beside the table.
+    """Counts of what is written beside the table.
 
     orbit: samples per period of every orbit, written to orbits.parquet
     attractors: starts followed at every belt speed; all states they end in are written to attractors.csv
@@ -59,7 +59,7 @@ class Keep(Record):
 
 
 class Limit(Record):
-    """What a point may cost.
+    """Limit of the cost of a point.
 
     seconds_per_point: seconds that a point may take, compiling left out, until it counts as killed
     """
@@ -78,7 +78,7 @@ class DataFiles(Record):
     columns: dict[str, str] = Field(default_factory=dict)
 
     def resolved(self) -> dict[str, Any]:
-        """The entry of a study file."""
+        """Return the entry of a study file."""
         told = self.model_dump(exclude_defaults=True)
         return told | {"file": self.file[0] if len(self.file) == 1 else list(self.file)}
 
@@ -114,7 +114,7 @@ class FreeRange(Record):
         return self
 
     def resolved(self) -> list[float] | dict[str, Any]:
-        """The entry of a study file."""
+        """Return the entry of a study file."""
         ends = [self.low, self.high]
         return {"from": ends[0], "to": ends[1], "spacing": self.spacing} if self.spacing else ends
 
@@ -158,4 +158,4 @@ class StudyKeys(Record):
 
 
 NOT_KEPT, USUAL_LIMIT = Keep(), Limit()
-"""What a study keeps, and a point may cost, where it does not say."""
+"""Counts that a study keeps, and the cost of a point, where it does not say."""

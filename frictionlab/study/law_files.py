@@ -1,4 +1,4 @@
-"""The law files of a study: those under ``plugins`` and those of ``--law``."""
+"""Law files of a study: those under ``plugins`` and those of ``--law``."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ KEY = "plugins"
 
 
 class StudyLaws(NamedTuple):
-    """The law files of a study and every law it may name. codes: SHA-256 of laws whose code is not at hand."""
+    """Law files of a study and every law it may name. codes: SHA-256 of laws whose code is not at hand."""
 
     files: tuple[LawFile, ...]
     laws: registry.Laws
@@ -47,7 +47,7 @@ class StudyLaws(NamedTuple):
 
 
 Plugins = Literal["run", "refuse"]
-"""What becomes of the law files that a study lists: loading them runs their code."""
+"""Treatment of the law files that a study lists: loading them runs their code."""
 LawReader = Callable[[dict[str, Any], FilePath, Notes], StudyLaws]
 
 
@@ -71,14 +71,14 @@ def refuse_law_files(source: Source) -> None:
 
 
 def read_laws(tree: dict[str, Any], folder: FilePath, notes: Notes) -> StudyLaws:
-    """The laws of the files a study lists, each file once. Raises BrokenPlugin for a file without usable laws."""
+    """Laws of the files a study lists, each file once. Raises BrokenPlugin for a file without usable laws."""
     read = [_read(name, path, folder, notes) for name, path in listed_files(tree, notes)]
     files = tuple(dict.fromkeys(file for file in read if file is not None))
     return StudyLaws(files, laws_of(files))
 
 
 def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, KeyPath]]:
-    """The files a study lists, each with its path in the study."""
+    """Return the files a study lists, each with its path in the study."""
     given = tree.get(KEY, [])
     if not isinstance(given, list):
         notes.add((KEY,), f"must be a list of Python files such as [my_law.py], got {value_text(given)}")
@@ -98,7 +98,7 @@ def _read(name: str, path: KeyPath, folder: FilePath, notes: Notes) -> LawFile |
 
 
 def laws_of(files: Sequence[LawFile]) -> registry.Laws:
-    """The installed laws and those of these files. Raises BrokenPlugin where two have the same name.
+    """Return the installed laws and those of these files. Raises BrokenPlugin where two have the same name.
 
     A file may be the very text of an installed law.
     """
@@ -116,13 +116,13 @@ def laws_of(files: Sequence[LawFile]) -> registry.Laws:
 
 
 def _is_installed(name: str, file: LawFile) -> bool:
-    """Whether the installed law of this name comes from the same text."""
+    """Check whether the installed law of this name comes from the same text."""
     source = inspect.getsourcefile(registry.law_class(name))
     return source is not None and FilePath(source).read_text(encoding="utf-8") == file.text
 
 
 def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
-    """The installed laws and those of these files. Raises StudyError for an unreadable file, BrokenPlugin."""
+    """Return the installed laws and those of these files. Raises StudyError for an unreadable file, BrokenPlugin."""
     files = []
     for path in paths:
         try:
@@ -133,7 +133,7 @@ def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
 
 
 class SavedLaw(FrictionLaw):
-    """The name and parameters of a law of a saved run: enough for a report, not for computing."""
+    """Name and parameters of a law of a saved run: enough for a report, not for computing."""
 
     def sliding_friction(self, speed: float) -> float:
         raise NotImplementedError(f"the law of a saved run has no friction to compute (at {speed})")
@@ -186,7 +186,7 @@ def _told_of_law(kind: str, files: tuple[LawFile, ...]) -> tuple[str, str]:
 
 
 def _bibtex(law: ast.ClassDef) -> str:
-    """The value of ``bibtex`` in a class, if it is plain text."""
+    """Return the value of ``bibtex`` in a class, if it is plain text."""
     for node in law.body:
         if isinstance(node, ast.Assign | ast.AnnAssign) and isinstance(node.value, ast.Constant):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]

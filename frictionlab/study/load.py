@@ -26,7 +26,7 @@ def load_study(
     law_files: Sequence[Path] = (),
     plugins: Plugins = "run",
 ) -> Study:
-    """The study of this file, with ``path=value`` overrides and more files of laws.
+    """Return the study of this file, with ``path=value`` overrides and more files of laws.
 
     plugins: ``refuse`` makes the law files that the study itself lists a mistake; ``run`` runs their code.
     Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
@@ -41,7 +41,7 @@ def load_study(
 
 
 def read_back(path: Path, codes: Mapping[str, str]) -> Study:
-    """The study that a run saved; laws of other packages become records without physics. codes: their SHA-256.
+    """Return the study that a run saved; laws of other packages become records without physics. codes: their SHA-256.
 
     Raises StudyError with every mistake.
     """
@@ -50,7 +50,7 @@ def read_back(path: Path, codes: Mapping[str, str]) -> Study:
 
 
 def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
-    """The study of a mapping shaped like a study file; its plugins are relative to the working folder.
+    """Return the study of a mapping shaped like a study file; its plugins are relative to the working folder.
 
     Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
     """
@@ -58,5 +58,5 @@ def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name:
 
 
 def read_study(source: Source, bring: LawReader = read_laws) -> Study:
-    """The study of values already read, such as a part of a larger file. Raises StudyError with every mistake."""
+    """Study of values already read, such as a part of a larger file. Raises StudyError with every mistake."""
     return Study(**read_values(source, bring=bring))

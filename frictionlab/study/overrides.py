@@ -103,7 +103,7 @@ class _Override:
             self._forget((*path[:-1], other))
 
     def _stepped(self, at: Any, path: KeyPath, step: str | int) -> Any:
-        """The value one step down; a mapping that the study lacks is added."""
+        """Return the value one step down; a mapping that the study lacks is added."""
         if isinstance(at, dict) and isinstance(step, str):
             if step not in at:
                 at[step] = {}
@@ -124,7 +124,7 @@ class _Override:
 
 
 def _label(item: Any) -> str:
-    """The label of a law or method as written in the file."""
+    """Return the label of a law or method as written in the file."""
     if isinstance(item, dict):
         return str(item.get("label", item.get("kind", "")))
     return str(item)

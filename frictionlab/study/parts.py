@@ -1,4 +1,4 @@
-"""The laws and methods of a study, each under a unique label."""
+"""Laws and methods of a study, each under a unique label."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class LawChoice:
     law_class: type[FrictionLaw] = field(compare=False, repr=False)
 
     def law(self, values: Mapping[str, GridValue] | None = None) -> FrictionLaw:
-        """The law, with some parameters replaced by these values."""
+        """Return the law, with some parameters replaced by these values."""
         return self.law_class.model_validate(self.parameters | dict(values or {}))
 
     def under_friction(self, coefficients: tuple[GridValue, ...]) -> dict[str, tuple[GridValue, ...]]:
-        """The parameters of the law that has these friction coefficients, ``mu_static`` in the ratio it has."""
+        """Parameters of the law that has these friction coefficients, ``mu_static`` in the ratio it has."""
         name = coefficient_of(self.law_class)
         given, static = self.parameters[name], self.parameters.get(STATIC)
         if static is None:
@@ -47,23 +47,23 @@ class LawChoice:
 
     @property
     def in_words(self) -> str:
-        """What figures call it: the label that the study gives it, else the law's own words."""
+        """Return what figures call it: the label that the study gives it, else the law's own words."""
         return self.label if self.label != self.kind else self.law_class.in_words or self.label
 
     def resolved(self) -> dict[str, Any]:
-        """The entry of a study file."""
+        """Return the entry of a study file."""
         label = {} if self.label == self.kind else {"label": self.label}
         return {"kind": self.kind, **natural(self.parameters), **label}
 
 
 def plain_values(law: FrictionLaw) -> dict[str, Any]:
-    """The parameters of a law as a study gives them; texts with units stay such."""
+    """Return the parameters of a law as a study gives them; texts with units stay such."""
     written = {name: value for name, value in law if isinstance(value, Written)}
     return law.model_dump(exclude_none=True, mode="json") | written
 
 
 def coefficient_of(law: type[FrictionLaw]) -> str:
-    """The name of the parameter that is the friction coefficient of sliding: mu or mu_kinetic; '' without one."""
+    """Name of the parameter that is the friction coefficient of sliding: mu or mu_kinetic; '' without one."""
     return next((name for name in ("mu", "mu_kinetic") if name in law.model_fields), "")
 
 
@@ -77,24 +77,24 @@ class MethodChoice:
 
     @classmethod
     def of(cls, method: Method) -> MethodChoice:
-        """The choice of a method that is there already."""
+        """Return the choice of a method that is there already."""
         choice = cls(method.name, method.name, {})
         vars(choice)["method"] = method
         return choice
 
     @cached_property
     def method(self) -> Method:
-        """The method with its parameters."""
+        """Return the method with its parameters."""
         return registry.method_class(self.name).model_validate(self.parameters)
 
     @property
     def is_reduced(self) -> bool:
-        """Whether it solves a simpler model: its errors are then the distance to the full answers."""
+        """Check whether it solves a simpler model: its errors are then the distance to the full answers."""
         return self.name in REDUCED_MODELS
 
     @property
     def in_words(self) -> str:
-        """What figures call it: the label that the study gives it, else the method's own words."""
+        """Return what figures call it: the label that the study gives it, else the method's own words."""
         try:
             words = registry.method_class(self.name).in_words
         except (KeyError, registry.BrokenPlugin):  # of a run made where it could be used
@@ -102,7 +102,7 @@ class MethodChoice:
         return self.label if self.label != self.name else words or self.label
 
     def resolved(self) -> str | dict[str, Any]:
-        """The entry of a study file: the name alone if it has neither parameters nor a label."""
+        """Return the entry of a study file: the name alone if it has neither parameters nor a label."""
         if self.label == self.name and not self.parameters:
             return self.name
         label = {} if self.label == self.name else {"label": self.label}
@@ -110,7 +110,7 @@ class MethodChoice:
 
 
 def natural(value: Any) -> Any:
-    """The value with whole floats as integers, as a person would write them (and -0.0 as 0), texts as they were."""
+    """Value with whole floats as integers, as a person would write them (and -0.0 as 0), texts as they were."""
     if isinstance(value, Written):
         return value
     if isinstance(value, dict):
@@ -135,7 +135,7 @@ class Registered(NamedTuple):
 
 
 def law_choices(given: Any, laws: registry.Laws, notes: Notes) -> tuple[LawChoice, ...]:
-    """The laws without a mistake; mistakes are noted."""
+    """Return the laws without a mistake; mistakes are noted."""
 
     def unknown(name: str) -> tuple[str, str]:
         said, hint = laws.unknown(name)
@@ -151,7 +151,7 @@ def law_choices(given: Any, laws: registry.Laws, notes: Notes) -> tuple[LawChoic
 
 
 def method_choices(given: Any, notes: Notes) -> tuple[MethodChoice, ...]:
-    """The methods without a mistake; mistakes are noted."""
+    """Return the methods without a mistake; mistakes are noted."""
     items = _items(given, ("methods",), _methods(), notes)
     return tuple(filter(None, (method_choice(item, path, notes) for item, path in items)))
 
@@ -173,7 +173,7 @@ def _methods() -> Registered:
 
 
 def _items(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> Iterator[tuple[Any, KeyPath]]:
-    """The items of a list that must not be empty, each with its path; equal labels are noted."""
+    """Yield the items of a list that must not be empty, each with its path; equal labels are noted."""
     if not isinstance(given, list):
         notes.add(path, f"must be a list such as [{kinds.example}], got {value_text(given)}")
         return
@@ -204,7 +204,7 @@ def _choice(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> tuple
 
 
 def _kind(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> str | None:
-    """The registered name of an item; None, noted, where it is none."""
+    """Return the registered name of an item; None, noted, where it is none."""
     if isinstance(given, dict) and "kind" not in given:
         if not _named_by_its_key(given, kinds.names, path, notes):
             notes.add((*path, "kind"), "required key is missing")
@@ -223,13 +223,13 @@ def _kind(given: Any, path: KeyPath, kinds: Registered, notes: Notes) -> str | N
 
 
 def label_of(given: Any) -> str | None:
-    """The label of an item, whatever other mistakes the item has."""
+    """Return the label of an item, whatever other mistakes the item has."""
     label = given.get("label", given.get("kind")) if isinstance(given, dict) else given
     return label if isinstance(label, str) else None
 
 
 def _named_by_its_key(given: dict[str, Any], installed: Sequence[str], path: KeyPath, notes: Notes) -> bool:
-    """Whether an item is written as ``name: {...}``, which is noted with the way to write it."""
+    """Check whether an item is written as ``name: {...}``, which is noted with the way to write it."""
     name = next((key for key in given if key in installed), None)
     if name is None:
         return False

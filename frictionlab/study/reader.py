@@ -58,7 +58,7 @@ LARGEST_KEPT = {
     "harmonics": (10_000_000, "{count} harmonics of {size} points are more than {most}"),
     "attractors": (100_000, "{count} starts at {size} points are more than {most}"),
 }
-"""What is kept of each point: how much in all, and the sentence where it is more."""
+"""Largest count of what is kept in all, and the sentence where it is more."""
 
 
 def note_impossible_points(grid: StudyGrid, keys: StudyKeys, notes: Notes) -> None:
@@ -102,14 +102,14 @@ def _build_all(grid: StudyGrid, notes: Notes) -> None:
 
 
 def _has_a_stiffness(law: Any) -> bool:
-    """Whether a compliant law keeps a presliding length and a stiffness > 0, neither infinite."""
+    """Check whether a compliant law keeps a presliding length and a stiffness > 0, neither infinite."""
     if not law.compliant:
         return True
     return 0.0 < law.bristle_stiffness < math.inf and 0.0 < law.presliding() < math.inf
 
 
 def _thinned(grid: StudyGrid) -> StudyGrid:
-    """The grid with few enough values of each sweep, its ends among them, to build every point."""
+    """Return the grid with few enough values of each sweep, its ends among them, to build every point."""
     while grid_size(grid) > LARGEST_CHECK:
         longest = max(grid.axes, key=len)
         if len(longest) == 2:
@@ -119,7 +119,7 @@ def _thinned(grid: StudyGrid) -> StudyGrid:
 
 
 def _build(build: Callable[[], Any], owners: Container[str], grid: StudyGrid, notes: Notes) -> Any:
-    """What is built; None, noted, of values that are right one by one but invalid together.
+    """Return what is built; None, noted, of values that are right one by one but invalid together.
 
     owners: of the sweeps they are of.
     """
@@ -133,7 +133,7 @@ def _build(build: Callable[[], Any], owners: Container[str], grid: StudyGrid, no
 
 
 def _place(swept: str, grid: StudyGrid) -> KeyPath:
-    """Where in a study a sweep is."""
+    """Return where in a study a sweep is."""
     entry = next((index for index, paths in enumerate(grid.links) if swept in paths), None)
     return ("sweep", swept) if entry is None else ("sweep", LINKED, entry, swept)
 
@@ -150,7 +150,7 @@ def read_values(
     bring: LawReader = read_laws,
     with_files: bool = True,
 ) -> dict[str, Any]:
-    """The values of a ``Study``. Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
+    """Values of a ``Study``. Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
 
     overrides: ``path=value``. folder: that of the law files and measurements it names. with_files: whether
     measurements have to be there.
@@ -249,7 +249,7 @@ class _StudyReader:
         return found
 
     def _swept_name(self, path: KeyPath, found: Sweeps) -> str:
-        """The name under which a sweep would vary the value at this path."""
+        """Return the name under which a sweep would vary the value at this path."""
         if len(path) == 3 and path[0] == "laws" and isinstance(path[1], int):
             law = self._tree["laws"][path[1]]
             kind = law.get("kind")
@@ -268,7 +268,7 @@ class _StudyReader:
         laws: tuple[LawChoice, ...],
         methods: tuple[MethodChoice, ...],
     ) -> dict[str, Any]:
-        """The values of keys that refer to other parts; what these do not have is noted."""
+        """Return the values of keys that refer to other parts; what these do not have is noted."""
         notes, table = self._notes, self._table(scene, sweep, laws, methods)
         check_against(keys.figures, table.texts["law"], notes)
         check_boundaries(keys.boundaries, sweep, notes)
@@ -299,7 +299,7 @@ class _StudyReader:
     def _table(
         self, scene: Scene, sweep: Sweeps, laws: tuple[LawChoice, ...], methods: tuple[MethodChoice, ...]
     ) -> Table:
-        """The columns that ``where`` may name."""
+        """Return the columns that ``where`` may name."""
         values = scene.values()
         kinds = tuple(dict.fromkeys(law.kind for law in laws))
         classes = [self._known.named(kind) for kind in kinds]
@@ -328,7 +328,7 @@ class _StudyReader:
 def _words(
     values: Mapping[str, Any], sweep: Mapping[str, tuple[GridValue, ...]]
 ) -> dict[str, tuple[str, ...]]:
-    """The columns of a scene's words and waveforms, and what each can hold."""
+    """Return the columns of a scene's words and waveforms, and what each can hold."""
     numbers = number_paths(Scene)
     found: dict[str, tuple[str, ...]] = {}
     for path, value in values.items():

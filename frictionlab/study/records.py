@@ -1,4 +1,4 @@
-"""The installed laws and methods as plain records, for output as text or JSON."""
+"""Installed laws and methods as plain records, for output as text or JSON."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _parameters(record: type[Record]) -> list[dict[str, Any]]:
 
 
 def _owner(record: type[BaseModel], name: str) -> type[BaseModel]:
-    """The class that defines a parameter and documents it."""
+    """Return the class that defines a parameter and documents it."""
     return next((kind for kind in record.__mro__ if name in inspect.get_annotations(kind)), record)
 
 
@@ -121,7 +121,7 @@ def _parameter(name: str, field: Any, meant: str) -> dict[str, Any]:
 
 
 def _rules(field: Any) -> list[Any]:
-    """The limits on the values of a field, those inside an optional type included."""
+    """Return the limits on the values of a field, those inside an optional type included."""
     inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
     rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
     return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]

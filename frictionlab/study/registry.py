@@ -36,11 +36,11 @@ from frictionlab.study.entry_points import (
 from frictionlab.values.notes import Unreadable, text_of, unknown_name
 
 _TEXTS: dict[str, str] = {}
-"""The text of every law file read, by the name of its module."""
+"""Text of every law file read, by the name of its module."""
 
 
 def home_of_file(path: Path) -> Home:
-    """The origin for errors in a file as a whole."""
+    """Return the origin for errors in a file as a whole."""
     return Home(f"file {path}", "correct the file")
 
 
@@ -53,7 +53,7 @@ class LawFile:
     laws: dict[str, type[FrictionLaw]] = field(compare=False)
 
     def home(self, name: str) -> Home:
-        """The origin of one of its laws."""
+        """Return the origin of one of its laws."""
         return Home(
             f"law '{name}' (class {self.laws[name].__name__}) of file {self.path}", "correct the file"
         )
@@ -65,7 +65,7 @@ class LawFile:
 
 
 def read_law_file(path: Path) -> LawFile:
-    """The laws of this file. Raises Unreadable, BrokenPlugin."""
+    """Return the laws of this file. Raises Unreadable, BrokenPlugin."""
     if path.suffix != ".py":
         raise Unreadable("must be a Python file, *.py")
     text = text_of(path)
@@ -75,7 +75,7 @@ def read_law_file(path: Path) -> LawFile:
 
 
 def law_name(name: str) -> str:
-    """The law of a class of this name as studies write it: ``MyLaw`` is ``my-law``."""
+    """Return the law of a class of this name as studies write it: ``MyLaw`` is ``my-law``."""
     parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name)
     return parts.replace("_", "-").strip("-").lower()
 
@@ -118,7 +118,7 @@ def _sha256(text: str) -> str:
 
 @cache
 def _module(name: str, path: Path, text: str) -> ModuleType:
-    """The module of this text, run once. Compiled here: Python's own cache misses an edit within a second."""
+    """Return the module of this text, run once. Compiled here: Python's own cache misses an edit within a second."""
     linecache.checkcache(str(path))
     if name in sys.modules:  # the same text from another folder
         return sys.modules[name]
@@ -134,7 +134,7 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
 
 
 def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
-    """The laws defined in the module itself, without the base classes of others among them."""
+    """Return the laws defined in the module itself, without the base classes of others among them."""
     classes = dict.fromkeys(kind for kind in vars(module).values() if isinstance(kind, type))
     own = [kind for kind in classes if issubclass(kind, FrictionLaw) and kind.__module__ == module.__name__]
     bases = {base for kind in own for base in kind.__mro__[1:]}
@@ -156,7 +156,7 @@ def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
 
 
 def _pickled(law: FrictionLaw) -> tuple[Any, ...]:
-    """What another process makes the law from: the file's text is in it, since no module of this name is there."""
+    """Return what another process makes the law from: the file's text too, as no module of this name is there."""
     module = sys.modules[type(law).__module__]
     return (
         _blank,
@@ -189,23 +189,23 @@ METHODS = "frictionlab.methods"
 
 
 def law_names() -> list[str]:
-    """The names of every installed law, sorted."""
+    """Return the names of every installed law, sorted."""
     return sorted(_entry_points(LAWS))
 
 
 def method_names() -> list[str]:
-    """The names of every installed method, sorted."""
+    """Return the names of every installed method, sorted."""
     return sorted(_entry_points(METHODS))
 
 
 def law_class(name: str) -> type[FrictionLaw]:
-    """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
+    """Return the law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
     found: type[FrictionLaw] = _load(LAWS, name)
     return found
 
 
 def method_class(name: str) -> type[Method]:
-    """The method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
+    """Return the method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
     found: type[Method] = _load(METHODS, name)
     return found
 
@@ -223,7 +223,7 @@ def method_code(name: str) -> str:
 
 
 class Laws:
-    """The laws a study may name: those of its law files and the installed ones.
+    """Laws a study may name: those of its law files and the installed ones.
 
     homes: the origins of the laws of files; a law without one has been checked before.
     """
@@ -240,7 +240,7 @@ class Laws:
         return sorted({*law_names(), *self._own})
 
     def usable(self) -> list[str]:
-        """The names of laws that are not broken."""
+        """Return the names of laws that are not broken."""
         return [name for name in self.names() if not self._wrong(name)]
 
     def aliases(self) -> dict[str, list[str]]:
@@ -255,7 +255,7 @@ class Laws:
         }
 
     def unknown(self, name: str) -> tuple[str, str]:
-        """The sentence for a name that no law has, and a suggestion."""
+        """Return the sentence for a name that no law has, and a suggestion."""
         aliases = self.aliases()
         others = {each for own in aliases.values() for each in own}
         told = (
@@ -285,7 +285,7 @@ class Laws:
         return ""
 
     def named(self, name: str) -> type[FrictionLaw]:
-        """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
+        """Law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
         if name not in self._own:
             return law_class(name)
         law = self._own[name]
@@ -299,12 +299,12 @@ class Laws:
 
 
 INSTALLED_LAWS = Laws()
-"""The installed laws alone, without those of files."""
+"""Installed laws alone, without those of files."""
 
 
 @cache
 def _entry_points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
-    """The entry points of each name; duplicates, as from two copies of a package, are merged."""
+    """Return the entry points of each name; duplicates, as from two copies of a package, are merged."""
     found: dict[str, dict[str, EntryPoint]] = {}
     for door in metadata.entry_points(group=group):
         found.setdefault(door.name, {}).setdefault(door.value, door)
@@ -313,7 +313,7 @@ def _entry_points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
 
 @cache
 def _load(group: str, name: str) -> Any:
-    """The class of this name. Raises KeyError, BrokenPlugin."""
+    """Return the class of this name. Raises KeyError, BrokenPlugin."""
     return open_entry_point(_entry_points(group)[name], FrictionLaw if group == LAWS else Method)
 
 

@@ -1,4 +1,4 @@
-"""The JSON Schema of a study file, built from the installed laws and methods."""
+"""JSON Schema of a study file, built from the installed laws and methods."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ _KEYS = {
     FRICTION: "friction coefficients: mu or mu_kinetic of every law, mu_static keeping its ratio",
     LINKED: "lists that advance together, by dotted path; entries and other sweeps make the grid",
 }
-"""What the keys of a study mean, apart from those of records, whose docstrings tell them."""
+"""Meanings of the keys of a study, apart from those of records, whose docstrings tell them."""
 _NUMBER = {"type": "number"}
 _WORD_OR_NUMBER: dict[str, Any] = {
     "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
 }
-"""What a sweep of a scene runs over, and what selects rows of its table."""
+"""Values of a sweep of a scene, and of what selects rows of its table."""
 _TEXT = {"type": "string"}
 _WITH_UNIT = _TEXT | {"pattern": r"^\s*[-+]?[0-9.]"}
 """A number and its unit, in a scene in SI units."""
@@ -79,7 +79,7 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
 
 
 def schema_text(laws: registry.Laws = registry.INSTALLED_LAWS) -> str:
-    """The JSON Schema as the text of a file."""
+    """Return the JSON Schema as the text of a file."""
     return json.dumps(schema(laws), indent=2)
 
 
@@ -92,7 +92,7 @@ def _closed_object(properties: dict[str, Any], required: list[str]) -> dict[str,
 
 
 def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
-    """The schema of a record; those of the records inside it are added to the definitions."""
+    """Return the schema of a record; those of the records inside it are added to the definitions."""
     made: dict[str, Any] = _study_schema(record.model_json_schema(ref_template="#/$defs/{model}"))
     inside = made.pop("$defs", {})
     _describe(record, made, inside)

@@ -1,4 +1,4 @@
-"""The record of a study: frozen, complete, with every default filled in.
+"""Record of a study: frozen, complete, with every default filled in.
 
 A study from Python objects, read and checked as the study file that would say the same.
 """
@@ -55,7 +55,7 @@ def values_of_objects(
     sweep: Mapping[str, Any] | None = None,
     **told: Any,
 ) -> dict[str, Any]:
-    """The values of a study of these objects; see ``Study.of``."""
+    """Return the values of a study of these objects; see ``Study.of``."""
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be an fl.Scene, got {python_text(scene)}")
     labelled = list(_labelled(laws, "laws", FrictionLaw, "a friction law such as fl.Coulomb(mu=0.4)"))
@@ -90,7 +90,7 @@ def values_of_objects(
 
 
 def kind_of(law: FrictionLaw) -> str:
-    """The registered name of a law, of several that of its file; its class's where it is not registered."""
+    """Return the registered name of a law, of several that of its file; its class's where it is not registered."""
     names = []
     for name in registry.law_names():
         with suppress(registry.BrokenPlugin):  # another law's trouble
@@ -130,7 +130,7 @@ def _plain(value: Any) -> Any:
 
 
 LAW_COPIES = "laws"
-"""The folder in which a run keeps the files of laws it used."""
+"""Folder in which a run keeps the files of laws it used."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -260,7 +260,7 @@ class Study(StudyGrid):
         return cls(**values_of_objects(scene, laws, methods, sweep, **told))
 
     def __repr__(self) -> str:
-        """What one would type to make it of objects; of long lists the ends."""
+        """Return what one would type to make it of objects; of long lists the ends."""
         laws = _as_given({choice.label: (choice.kind, choice.law()) for choice in self.laws})
         methods = _as_given(
             {one.label: (one.name, one.method if one.parameters else one.name) for one in self.methods}
@@ -295,7 +295,7 @@ class Study(StudyGrid):
         return yaml_text(self.resolved())
 
     def resolved(self) -> dict[str, Any]:
-        """The study as plain values; with its ``law_texts`` beside it they load to an equal study."""
+        """Return the study as plain values; with its ``law_texts`` beside it they load to an equal study."""
         keys = {
             name: _as_written(getattr(self, name))
             for name, key in StudyKeys.model_fields.items()
@@ -325,7 +325,7 @@ class Study(StudyGrid):
         return told
 
     def selected(self) -> frozenset[str]:
-        """The result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
+        """Result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
         judged = [
             each.column for each in self.expect if each.column and each.column not in columns.CURVE_MEASURES
         ]
@@ -336,11 +336,11 @@ class Study(StudyGrid):
         return columns.selected(self.columns, [*judged, *of_shape])
 
     def asks_for(self, group: str) -> bool:
-        """Whether a group of columns is asked for by its name."""
+        """Check whether a group of columns is asked for by its name."""
         return columns.asks_for(self.columns, group)
 
     def law_texts(self) -> dict[str, str]:
-        """The files of laws, by the names under which a run keeps copies of them."""
+        """Return the files of laws, by the names under which a run keeps copies of them."""
         found: dict[str, str] = {}
         for file in self.plugins:
             stem = f"{LAW_COPIES}/{file.path.stem}"
@@ -377,7 +377,7 @@ class Study(StudyGrid):
 
 
 def _as_written(value: Any) -> Any:
-    """The value of a key as a study file writes it."""
+    """Return the value of a key as a study file writes it."""
     if isinstance(value, Record):
         return natural(
             value.resolved() if hasattr(value, "resolved") else value.model_dump(exclude_defaults=True)

@@ -1,4 +1,4 @@
-"""What a sweep can vary: the values of a scene, and the numbers of its laws."""
+"""Values that a sweep can vary: those of a scene, and the numbers of its laws."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _GROUPS = (
 
 @dataclass(frozen=True)
 class Target:
-    """What one sweep varies: ``key`` of the mapping at ``parent``, a field of ``record``."""
+    """Target of one sweep: ``key`` of the mapping at ``parent``, a field of ``record``."""
 
     parent: KeyPath
     key: str
@@ -39,16 +39,16 @@ class Target:
 
     @property
     def is_number(self) -> bool:
-        """Whether it is a number, of which ranges are made, and no word."""
+        """Check whether it is a number, of which ranges are made, and no word."""
         return self.key in number_paths(self.record)
 
     def is_given(self, within: dict[str, Any]) -> bool:
-        """Whether a part of a study gives it, under whichever key."""
+        """Check whether a part of a study gives it, under whichever key."""
         return any(field_name(self.record, key) == self.key for key in within)
 
 
 class Targets:
-    """What sweeps can vary: the values of a scene, and the numbers of its laws by label."""
+    """Values that sweeps can vary: those of a scene, and the numbers of its laws by label."""
 
     def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> None:
         self._tree, self._laws, self._notes = tree, laws, notes
@@ -72,7 +72,7 @@ class Targets:
 
     @cached_property
     def _all_known(self) -> bool:
-        """Whether no mistake in a law leaves its label or its kind open."""
+        """Check whether no mistake in a law leaves its label or its kind open."""
         laws, kinds = self._tree.get("laws"), self._laws.names()
         each = laws if isinstance(laws, list) else []
         visible = all(label.strip() and label.isprintable() for label in self._labels)
@@ -80,7 +80,7 @@ class Targets:
         return sure and all(isinstance(law, dict) and law.get("kind") in kinds for law in each)
 
     def at(self, key: str, path: KeyPath) -> list[Target]:
-        """What a sweep of this name, at this path, varies; nothing, noted, where there is no such thing."""
+        """Return what a sweep of this name, at this path, varies; nothing, noted, where there is no such thing."""
         if key == FRICTION:
             return self._of_every_law(path)
         head, *steps = key.split(".")
@@ -96,7 +96,7 @@ class Targets:
         return [] if found is None else [found]
 
     def _hint(self, key: str, at: KeyPath) -> str:
-        """The value whose path ends so, of a part that the study has; else the name most similar to the one given."""
+        """Value whose path ends so, of a part that the study has; else the name most similar to the one given."""
         names = {path: {path, without_unit(path)} for path in self._sweepable}
         ending = (path for path in names if any(f".{name}".endswith(f".{key}") for name in names[path]))
         found = next((path for path in ending if self._has_part(path)), None)
@@ -105,22 +105,22 @@ class Targets:
         return did_you_mean(as_told(found or key), known)
 
     def _has_texts(self, at: KeyPath) -> bool:
-        """Whether values of a sweep are written as text, with units then: so its name needs none."""
+        """Check whether values of a sweep are written as text, with units then: so its name needs none."""
         given = value_at(self._tree, at)
         each = [given.get(end) for end in ENDS] if isinstance(given, dict) else given
         return isinstance(each, list) and any(isinstance(value, str) for value in each)
 
     def _has_part(self, path: str) -> bool:
-        """Whether the study has the law, or gives the part of the scene, that this value is of."""
+        """Check whether the study has the law, or gives the part of the scene, that this value is of."""
         return path.startswith("laws.") or isinstance(value_at(self._tree, tuple(path.split(".")[:-1])), dict)
 
     @cached_property
     def _with_friction(self) -> bool:
-        """Whether the study sweeps the friction coefficient of every law."""
+        """Check whether the study sweeps the friction coefficient of every law."""
         return FRICTION in swept_paths(self._tree)
 
     def _of_every_law(self, path: KeyPath) -> list[Target]:
-        """The friction coefficient of sliding of every law of a known kind."""
+        """Return the friction coefficient of sliding of every law of a known kind."""
         found = []
         for label, index in self._labels.items():
             given = self._tree["laws"][index]
@@ -204,7 +204,7 @@ def _alias_given(within: dict[str, Any], key: str, record: type[BaseModel]) -> s
 
 
 def swept_paths(tree: dict[str, Any]) -> tuple[str, ...]:
-    """The paths that a study sweeps, those of linked entries included, right or wrong."""
+    """Return the paths that a study sweeps, those of linked entries included, right or wrong."""
     given = tree.get("sweep")
     entries = given.get(LINKED) if isinstance(given, dict) else None
     lists = [given, *(entries if isinstance(entries, list) else ())]
@@ -212,7 +212,7 @@ def swept_paths(tree: dict[str, Any]) -> tuple[str, ...]:
 
 
 def value_at(tree: Any, path: KeyPath) -> Any:
-    """The value at this path, None if there is none; if the tree ends before the path does, its last value."""
+    """Return the value at this path, None if there is none; if the tree ends before the path does, its last value."""
     for step in path:
         if isinstance(tree, list) and isinstance(step, int):
             tree = tree[step]

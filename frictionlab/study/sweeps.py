@@ -20,7 +20,7 @@ from frictionlab.values.validation import build_record, checked_value, placed, w
 
 @dataclass
 class Sweeps:
-    """The sweeps of a study, the ranges and the links among them.
+    """Sweeps of a study, the ranges and the links among them.
 
     stand_ins: where first values stand in for what the study left out. written: where each path is swept.
     """
@@ -45,7 +45,7 @@ def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Swee
 
 
 class _SweepReader:
-    """The sweeps of a study, read one after another."""
+    """Sweeps of a study, read one after another."""
 
     def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> None:
         self._tree, self._notes = tree, notes
@@ -81,7 +81,7 @@ class _SweepReader:
         self.found.written[name] = path
 
     def _numbers(self, given: Any, target: Target | None, key: str) -> Any:
-        """The values of a sweep, or the ends of its range, those written as text with a unit as numbers."""
+        """Return the values of a sweep, or the ends of its range, those written as text with a unit as numbers."""
         if not self._in_si:
             return given
         key = key.rpartition(".")[2]
@@ -98,7 +98,7 @@ class _SweepReader:
         return {name: number(each) if name in ENDS else each for name, each in given.items()}
 
     def read_linked(self, given: Any) -> None:
-        """The entries of lists that advance together."""
+        """Read the entries of lists that advance together."""
         if not isinstance(given, list):
             what = (
                 "must be a list of entries such as {scene.drive.frequency: [1, 2], scene.normal_load: [5, 9]}"
@@ -158,7 +158,7 @@ def _stand_in(
 
 
 def _read_values(given: Any, target: Target | None, path: KeyPath, notes: Notes, unique: bool) -> Read:
-    """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
+    """Values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
     words = target is not None and not target.is_number
     if isinstance(given, list):
         values = _list_values(given, target, path, notes)
@@ -204,7 +204,7 @@ def _list_value(item: Any, target: Target | None, path: KeyPath, notes: Notes) -
 
 
 def _built(read: Read, path: KeyPath, notes: Notes) -> tuple[GridValue, ...]:
-    """The values; of belt speeds that are chosen as a run goes the ends."""
+    """Return the values; of belt speeds that are chosen as a run goes the ends."""
     if not isinstance(read, SweepRange):
         return read.ends if isinstance(read, SpeedRange) else read
     values = read.values()

@@ -26,24 +26,24 @@ from frictionlab.values.validation import field_path, number_paths
 
 
 def column_of(path: str) -> str:
-    """The path under which the table has what a study calls so: with the unit of a number in SI units."""
+    """Return the path under which the table has what a study calls so: with the unit of a number in SI units."""
     return f"{SCENE}{field_path(Scene, path.removeprefix(SCENE))}" if path.startswith(SCENE) else path
 
 
 def scene_is_in_si(tree: Mapping[str, Any]) -> bool:
-    """Whether the scene of a study is given in SI units, rightly or wrongly."""
+    """Check whether the scene of a study is given in SI units, rightly or wrongly."""
     given = tree.get("scene")
     return isinstance(given, Mapping) and "dimensional" in given
 
 
 def units_of_law(law: type[FrictionLaw]) -> dict[str, str]:
-    """The unit of every parameter of a law that is a number or several, in a scene in SI units."""
+    """Return the unit of every parameter of a law that is a number or several, in a scene in SI units."""
     plain = dict.fromkeys(number_paths(law), "")
     return plain | {name: unit_of_dimension(each) for name, each in dimensions(law).items()}
 
 
 def number_written(record: type[BaseModel], key: str, name: str, value: Any) -> Any:
-    """The value of a field of a scene or of a law in SI units: a text with a unit as a number."""
+    """Return the value of a field of a scene or of a law in SI units: a text with a unit as a number."""
     if issubclass(record, AsWritten):
         return in_si(key, name, value)
     units = units_of_law(record) if issubclass(record, FrictionLaw) else {}
@@ -133,6 +133,6 @@ def _scalar(value: Any) -> str:
 
 
 def _number(value: float) -> str:
-    """The shortest form that reads back the same; YAML 1.1 reads 1e-08 without a point as text."""
+    """Return the shortest form that reads back the same; YAML 1.1 reads 1e-08 without a point as text."""
     mantissa, e, exponent = repr(value).partition("e")
     return f"{mantissa}{'' if '.' in mantissa else '.0'}{e}{exponent}"

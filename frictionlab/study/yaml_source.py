@@ -34,18 +34,18 @@ _LINE_END = re.compile("\r\n|[\r\n]")  # as the YAML reader counts lines
 
 @dataclass(frozen=True)
 class UnsupportedValue:
-    """The description of a value that no key of a study accepts, such as a date."""
+    """Description of a value that no key of a study accepts, such as a date."""
 
     words: str
 
     def __str__(self) -> str:
-        """The words."""
+        """Return the words."""
         return self.words
 
 
 @dataclass
 class Source:
-    """The values of a study with their positions; notes: the mistakes of the YAML itself.
+    """Values of a study with their positions; notes: the mistakes of the YAML itself.
 
     keys, values: path -> position. origins: path -> the ``--set`` that set the value.
     """
@@ -60,7 +60,7 @@ class Source:
 
     @cached_property
     def lines(self) -> list[str]:
-        """The lines of the text."""
+        """Return the lines of the text."""
         return _LINE_END.split(self.text)
 
     def also_at(self, path: KeyPath, given: KeyPath) -> None:
@@ -70,7 +70,7 @@ class Source:
                 places.setdefault((*path, *at[len(given) :]), places[at])  # type: ignore[arg-type]  # of three kinds
 
     def located(self, notes: Iterable[Note]) -> list[Mistake]:
-        """The notes as mistakes, in the order of the file, those of the command line last."""
+        """Return the notes as mistakes, in the order of the file, those of the command line last."""
         found = dict.fromkeys(self._located(note) for note in notes)
         return sorted(found, key=lambda mistake: mistake.place or (float("inf"), 0))
 
@@ -80,7 +80,7 @@ class Source:
         return Mistake(origin, place, dotted(note.path), note.what, note.hint, line)
 
     def _where(self, note: Note) -> tuple[str, TextPosition | None]:
-        """The position of the path, or of the innermost part around it that the study has."""
+        """Return the position of the path, or of the innermost part around it that the study has."""
         if note.origin or note.place:
             return note.origin or self.name, note.place
         for length in range(len(note.path), -1, -1):
@@ -94,7 +94,7 @@ class Source:
 
 
 def read_file(path: FilePath) -> Source:
-    """The values of a YAML file. Raises StudyError for a file that is not readable YAML text."""
+    """Return the values of a YAML file. Raises StudyError for a file that is not readable YAML text."""
     try:
         return read_text(text_of(path), str(path))
     except Unreadable as problem:
@@ -102,7 +102,7 @@ def read_file(path: FilePath) -> Source:
 
 
 def read_text(text: str, name: str) -> Source:
-    """The values of YAML text. Raises StudyError where it is empty or not YAML."""
+    """Return the values of YAML text. Raises StudyError where it is empty or not YAML."""
     source = Source(name, text)
     try:
         node = _compose(source)
@@ -115,7 +115,7 @@ def read_text(text: str, name: str) -> Source:
 
 
 def read_mapping(mapping: Mapping[str, Any], name: str) -> Source:
-    """The values of a mapping. Raises StudyError for one that no study file can hold."""
+    """Return the values of a mapping. Raises StudyError for one that no study file can hold."""
     source = Source(name)
     try:
         source.tree = _plain_value(mapping)
@@ -125,12 +125,12 @@ def read_mapping(mapping: Mapping[str, Any], name: str) -> Source:
 
 
 def unreadable(source: Source, what: str, place: TextPosition | None = None) -> StudyError:
-    """The error for a source that gives no values."""
+    """Return the error for a source that gives no values."""
     return StudyError(source.located([Note((), what, place=place)]))
 
 
 def _compose(source: Source) -> Node | None:
-    """The YAML node of the text; unlike values, nodes have positions and keep repeated keys."""
+    """Return the YAML node of the text; unlike values, nodes have positions and keep repeated keys."""
     if odd := _CONTROL.search(source.text):
         before = _LINE_END.split(source.text[: odd.start()])
         place = TextPosition(len(before), len(before[-1]) + 1)
@@ -153,7 +153,7 @@ def _place(mark: Any) -> TextPosition:
 
 
 def _value(source: Source, node: Any, path: KeyPath) -> Any:
-    """The node as a plain value; its position and those below it are recorded."""
+    """Return the node as a plain value; its position and those below it are recorded."""
     source.values.setdefault(path, _place(node.start_mark))
     kind = str(node.tag).removeprefix(_TAG)
     if isinstance(node, ScalarNode) and kind == "timestamp":
@@ -201,7 +201,7 @@ def _fault_of_key(key: Node) -> str:
 
 
 def _scalar_text(node: ScalarNode) -> str:
-    """The text; ruamel's round-trip reader marks with a BEL where a folded one wraps.
+    """Return the text; ruamel's round-trip reader marks with a BEL where a folded one wraps.
 
     Two halves of a character, as JSON writes them, become one; half a character the sign of what cannot be shown.
     """
@@ -220,7 +220,7 @@ def _real(text: str) -> float:
 
 
 def plain_number(value: int | float) -> int | float:
-    """The number; infinity for an integer that no float can hold."""
+    """Return the number; infinity for an integer that no float can hold."""
     try:
         float(value)
     except OverflowError:
@@ -229,7 +229,7 @@ def plain_number(value: int | float) -> int | float:
 
 
 def _plain_value(value: Any) -> Any:
-    """The value in the types that YAML text gives."""
+    """Return the value in the types that YAML text gives."""
     if isinstance(value, Mapping):
         return {str(key): _plain_value(item) for key, item in value.items()}
     if hasattr(value, "tolist"):  # of numpy and pandas

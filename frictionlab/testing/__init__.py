@@ -1,4 +1,4 @@
-"""The conformance battery any friction law must pass: ``check_law(MyLaw)`` in Python or in one line of a test."""
+"""Conformance battery any friction law must pass: ``check_law(MyLaw)`` in Python or in one line of a test."""
 
 from __future__ import annotations
 

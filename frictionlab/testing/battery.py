@@ -1,4 +1,4 @@
-"""The conformance battery: every check there is, and how a law is put through them."""
+"""Conformance battery: every check there is, and how a law is put through them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from frictionlab.testing.example import Check
 from frictionlab.testing.running import LawFailed, Outcome, Report, run_check
 
 MODULES = record, symmetry, declared, path, compiled, limits
-"""What a law must have before anything else can be asked of it comes first."""
+"""Modules of checks; first what a law must have before anything else can be asked of it."""
 CHECKS = tuple(each for module in MODULES for each in vars(module).values() if isinstance(each, Check))
 """In the order they run."""
 

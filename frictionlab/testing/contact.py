@@ -14,14 +14,14 @@ ContactMemory = tuple[Any, ...]
 
 
 class Response(NamedTuple):
-    """The response of a contact to a slip velocity: rates of its memory and the friction coefficient."""
+    """Response of a contact to a slip velocity: rates of its memory and the friction coefficient."""
 
     rates: ContactMemory
     friction: Any
 
 
 def response(law: FrictionLaw, v: Any, memory: ContactMemory) -> Response:
-    """The law at slip velocity ``v``: ``float`` on the line, ``complex`` in the plane."""
+    """Return the law at slip velocity ``v``: ``float`` on the line, ``complex`` in the plane."""
     if isinstance(law, BristleLaw):
         rate, friction = (bristle_in_the_plane if isinstance(v, complex) else bristle_on_the_line)(
             law, v, memory[0]
@@ -35,7 +35,7 @@ def response(law: FrictionLaw, v: Any, memory: ContactMemory) -> Response:
 
 
 def deflection_scale(law: BristleLaw) -> float:
-    """The largest deflection, else the presliding length, else 1 [scene length]."""
+    """Return the largest deflection, else the presliding length, else 1 [scene length]."""
     return next(
         (size for size in (law.largest_deflection(), law.presliding()) if 0.0 < size < float("inf")), 1.0
     )
@@ -52,26 +52,26 @@ def memory_after_slip(law: FrictionLaw, v: Any, share: float) -> ContactMemory:
 
 
 def stored_work(law: FrictionLaw, memory: ContactMemory) -> float:
-    """The recoverable work in the memory per unit normal load [scene length]."""
+    """Return the recoverable work in the memory per unit normal load [scene length]."""
     if isinstance(law, BristleLaw):
         return law.stored(memory[0])
     return law.stored(np.array(memory)) if isinstance(law, MemoryLaw) else 0.0
 
 
 def rotate(law: FrictionLaw, memory: ContactMemory, turn: complex) -> ContactMemory:
-    """The memory after a rotation of the plane: deflections rotate, scalars and a deflection along slip do not."""
+    """Memory after a rotation of the plane: deflections rotate, scalars and a deflection along slip do not."""
     if not has_direction(law):
         return memory
     return tuple(turn * each for each in memory)
 
 
 def reflect(law: FrictionLaw, memory: ContactMemory) -> ContactMemory:
-    """The memory after a reflection about the direction of the belt."""
+    """Return the memory after a reflection about the direction of the belt."""
     return tuple(each.conjugate() for each in memory) if has_direction(law) else memory
 
 
 def has_direction(law: FrictionLaw) -> bool:
-    """Whether the memory has a direction."""
+    """Check whether the memory has a direction."""
     return not isinstance(law, MemoryLaw) or law.memory_kind == "deflections"
 
 
@@ -81,12 +81,12 @@ def no_plane(law: FrictionLaw) -> str:
 
 
 def dot(a: Any, b: Any) -> float:
-    """The scalar product of two vectors of the plane, or the product on the line."""
+    """Return the scalar product of two vectors of the plane, or the product on the line."""
     return float((a * b.conjugate()).real)
 
 
 def rounding_noise(law: FrictionLaw, v: Any, memory: ContactMemory, step: float = 1e-13) -> Response:
-    """The change of the response under rounding of its arguments: the smallest tolerance of a comparison."""
+    """Return the change of the response under rounding of its arguments: the smallest tolerance of a comparison."""
     base = response(law, v, memory)
     rates, friction = [0.0] * len(memory), 0.0
     shifts = (1.0 + step, 1.0 - step, cmath.exp(1j * step))

@@ -28,7 +28,7 @@ from frictionlab.testing.contact import (
 
 
 class Violation(AssertionError):
-    """What a law must not do; the message says what it did."""
+    """Failure of a law; the message says what it did."""
 
 
 class Given:
@@ -52,7 +52,7 @@ class Given:
         return law
 
     def law_near_the_edge(self, when: Callable[[Any], bool]) -> Any:
-        """The same, one number of it often driven to where this only just holds: bounds are wrong there first."""
+        """Same, one number of it often driven to where this only just holds: bounds are wrong there first."""
         law = self.law(when)
         edges = {name: edge for name in _numbers(law) if (edge := _at_the_edge(law, name, when)) is not None}
         name = self.draw("parameter driven to the edge", st.sampled_from(["", *edges]))
@@ -60,7 +60,7 @@ class Given:
         return law
 
     def planar_law(self, when: Callable[[Any], bool] = lambda law: True) -> Any:
-        """The same with a meaning in the plane."""
+        """Return the same with a meaning in the plane."""
         return self.law(lambda law: not no_plane(law) and when(law))
 
     def slip(self) -> float:
@@ -117,7 +117,7 @@ class Given:
         self.require(gap <= room, f"{what}: friction", got=got.friction, expected=should.friction)
 
     def told(self) -> str:
-        """The numbers drawn, in one line."""
+        """Return the numbers drawn, in one line."""
         return ", ".join(f"{name} {_short(value)}" for name, value in self.drawn.items())
 
 
@@ -126,7 +126,7 @@ def _numbers(law: FrictionLaw) -> list[str]:
 
 
 def _at_the_edge(law: FrictionLaw, name: str, when: Callable[[Any], bool]) -> FrictionLaw | None:
-    """The law with one number so large or small that the condition only just holds; None if there is no such one."""
+    """Law with one number so large or small that the condition only just holds; None if there is no such one."""
     value = getattr(law, name)
     for end in (1e6 * value, 1e-6 * value):
         beyond = _changed(law, name, end)
@@ -138,7 +138,7 @@ def _at_the_edge(law: FrictionLaw, name: str, when: Callable[[Any], bool]) -> Fr
 def _between(
     law: FrictionLaw, name: str, ends: tuple[float, float], when: Callable[[Any], bool]
 ) -> FrictionLaw:
-    """Where the condition only just holds, by bisection from where it does to where it does not."""
+    """Return where the condition only just holds, by bisection from where it does to where it does not."""
     inside, outside = ends
     best = law
     for _ in range(40):

@@ -61,7 +61,7 @@ Result = Literal["passed", "failed", "skipped", "expected failure"]
 
 @dataclass(frozen=True)
 class Outcome:
-    """The result of one check.
+    """Result of one check.
 
     examples: how many were run. reason: of a skip or of an expected failure. counterexample: the smallest one of a
     failure: what is wrong, with its numbers. seconds: compilation included.
@@ -76,7 +76,7 @@ class Outcome:
 
     @property
     def good(self) -> bool:
-        """Whether it did not fail, expected failures apart."""
+        """Check whether it did not fail, expected failures apart."""
         return self.result != "failed"
 
     @property
@@ -99,12 +99,12 @@ class Report:
 
     @property
     def passed(self) -> bool:
-        """Whether no check failed, expected failures apart."""
+        """Check whether no check failed, expected failures apart."""
         return all(outcome.good for outcome in self.outcomes)
 
     @property
     def failures(self) -> list[Outcome]:
-        """The checks that failed and were not expected to."""
+        """Return the checks that failed and were not expected to."""
         return [outcome for outcome in self.outcomes if not outcome.good]
 
     def outcome(self, check: str) -> Outcome:
@@ -112,7 +112,7 @@ class Report:
         return {outcome.check: outcome for outcome in self.outcomes}[check]
 
     def count(self, result: Result) -> int:
-        """The number of checks with this result."""
+        """Return the number of checks with this result."""
         return sum(outcome.result == result for outcome in self.outcomes)
 
     def skips(self) -> list[str]:
@@ -156,7 +156,7 @@ class LawFailed(AssertionError):
 
 
 def heading(name: str) -> str:
-    """The heading above the outcomes of a law."""
+    """Return the heading above the outcomes of a law."""
     return f"\n{name}\n{'check':32}  {'result':16}  {'ran':>5}"
 
 
@@ -165,7 +165,7 @@ def _table_cell(text: str) -> str:
 
 
 class ExampleCount:
-    """The number of examples of a check, the last one, and their notes."""
+    """Number of examples of a check, the last one, and their notes."""
 
     def __init__(self) -> None:
         self.examples = 0
@@ -194,7 +194,7 @@ def run_check(check: Check, law: type[FrictionLaw], examples: int, seconds: floa
 def _problem(
     check: Check, law: type[FrictionLaw], counted: ExampleCount, examples: int, seconds: float
 ) -> str | None:
-    """The failure with its smallest counterexample; None if there is none."""
+    """Return the failure with its smallest counterexample; None if there is none."""
     try:
         with time_limit(seconds), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -222,7 +222,7 @@ def _change(check: Check, problem: Exception) -> str:
 def _examples(
     check: Check, law: type[FrictionLaw], counted: ExampleCount, examples: int
 ) -> Callable[[], None]:
-    """The check on ``examples`` drawn examples; Hypothesis ends with the smallest failing one."""
+    """Return the check on ``examples`` drawn examples; Hypothesis ends with the smallest failing one."""
 
     def body(data: Any) -> None:
         counted.last = one = Given(law, data.draw, counted.notes)
@@ -234,13 +234,13 @@ def _examples(
 
 
 def _described(what: str, counted: ExampleCount, change: str) -> str:
-    """What is wrong, with which numbers, and what to change."""
+    """Return what is wrong, with which numbers, and what to change."""
     drawn = counted.last.told() if counted.last is not None else ""
     return "; ".join([what, *([f"seen with {drawn}"] if drawn else []), f"to change: {change}"])
 
 
 def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:
-    """The message of a violation; of any other exception also the line of the law that raised it."""
+    """Return the message of a violation; of any other exception also the line of the law that raised it."""
     if isinstance(problem, AssertionError):
         return str(problem)
     files = {getattr(sys.modules.get(kind.__module__), "__file__", None) for kind in law.__mro__[:-1]}

@@ -1,4 +1,4 @@
-"""What Hypothesis draws for a law: any parameters its own limits allow, and slip and memory of their size."""
+"""Draws of Hypothesis for a law: any parameters its own limits allow, and slip and memory of their size."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_PRESENCES = 256
 
 
 class NoParameters(AssertionError):
-    """The law accepts none of the drawn parameters."""
+    """Law accepts none of the drawn parameters."""
 
 
 def evenly(low: float, high: float) -> st.SearchStrategy[float]:
@@ -43,13 +43,13 @@ def sizes(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 def seldom(special: st.SearchStrategy[Any], usual: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
-    """What is special one time in four, and simplest; else what is usual."""
+    """Return what is special one time in four, and simplest; else what is usual."""
     return st.integers(0, 3).flatmap(lambda way: usual if way else special)
 
 
 signs = st.sampled_from([1.0, -1.0])
 shares = seldom(st.sampled_from([0.0, 1.0, -1.0, 1.0, -1.0]), evenly(-1.0, 1.0))
-"""Of what a memory can hold, either way: none and all of it often enough to be seen."""
+"""Shares of what a memory can hold, either way: none and all of it often enough to be seen."""
 angles = evenly(-math.pi, math.pi)
 directions = seldom(
     st.sampled_from([1.0 + 0j, -1.0 + 0j, 1j, -1j]),
@@ -73,7 +73,7 @@ def unloaded_laws(law: type[FrictionLaw]) -> st.SearchStrategy[FrictionLaw]:
 
 @cache
 def fullest_laws(law: type[FrictionLaw]) -> st.SearchStrategy[FrictionLaw]:
-    """The same, as many parameters as can be given together given more often. Raises NoParameters."""
+    """Return the same, as many parameters as can be given together given more often. Raises NoParameters."""
     presences = _presences(law)
     fullest = {
         max((given for given in presences if name in given), key=len, default=()) for name in law.model_fields
@@ -94,7 +94,7 @@ def _of_presences(law: type[FrictionLaw], presences: list[tuple[str, ...]]) -> s
 
 
 def _of_one_length(told: dict[str, Any], lists: list[str]) -> dict[str, Any]:
-    """The values, every list as long as the shortest: laws of elements ask for as many values in each of theirs."""
+    """Values, every list as long as the shortest: laws of elements ask for as many values in each of theirs."""
     shortest = min([len(told[name]) for name in lists if name in told], default=0)
     return {name: value[:shortest] if name in lists else value for name, value in told.items()}
 
@@ -126,7 +126,7 @@ def _presences(law: type[FrictionLaw]) -> list[tuple[str, ...]]:
 
 
 def _is_accepted(law: type[FrictionLaw], given: tuple[str, ...]) -> bool:
-    """Whether some values of these make a law."""
+    """Check whether some values of these make a law."""
     random = Random(0)
     fields = {name: law.model_fields[name] for name in given}
     tries = ({name: _probed(_inside(field), random) for name, field in fields.items()} for _ in range(TRIES))
@@ -134,7 +134,7 @@ def _is_accepted(law: type[FrictionLaw], given: tuple[str, ...]) -> bool:
 
 
 def _inside(field: FieldInfo) -> tuple[Any, tuple[Any, ...]]:
-    """The type of a field that is given, and the rules beside it."""
+    """Return the type of a field that is given, and the rules beside it."""
     kind, rules = field.annotation, tuple(field.metadata)
     while get_origin(kind) in (Annotated, Union, UnionType):
         if get_origin(kind) is Annotated:
@@ -186,14 +186,14 @@ def quietly(examples: int, *phases: hypothesis.Phase) -> hypothesis.settings:
 
 
 def values(field: FieldInfo) -> st.SearchStrategy[Any]:
-    """What a field may hold, by its annotation; its default often enough to be seen."""
+    """Return what a field may hold, by its annotation; its default often enough to be seen."""
     drawn = _of(field.annotation, tuple(field.metadata))
     default = None if field.is_required() else field.get_default(call_default_factory=True)
     return drawn if default is None else seldom(st.just(default), drawn)
 
 
 def words(law: type[FrictionLaw], name: str) -> tuple[str, ...]:
-    """The words a parameter that takes no number may be."""
+    """Return the words a parameter that takes no number may be."""
     kind = law.model_fields[name].annotation
     return get_args(kind) if get_origin(kind) is Literal else ()
 
@@ -220,7 +220,7 @@ def _of(kind: Any, rules: tuple[Any, ...]) -> st.SearchStrategy[Any]:
 
 
 def _tuples(kinds: tuple[Any, ...], rules: tuple[Any, ...]) -> st.SearchStrategy[Any]:
-    """Of any length up to four, or one strategy per place."""
+    """Draw tuples of any length up to four, or by one strategy per place."""
     if kinds[-1] is not Ellipsis:
         return st.tuples(*[_of(kind, ()) for kind in kinds])
     least = max([getattr(rule, "min_length", 0) or 0 for rule in rules], default=0)
@@ -229,7 +229,7 @@ def _tuples(kinds: tuple[Any, ...], rules: tuple[Any, ...]) -> st.SearchStrategy
 
 
 def limits(rules: tuple[Any, ...]) -> tuple[float, float]:
-    """The least and largest number that pydantic's rules let through, whether or not they do at the limit."""
+    """Return the least and largest number that pydantic's rules let through, whether or not they do at the limit."""
     flat = [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
     low = [getattr(rule, key, None) for rule in flat for key in ("gt", "ge")]
     high = [getattr(rule, key, None) for rule in flat for key in ("lt", "le")]

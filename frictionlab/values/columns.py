@@ -1,4 +1,4 @@
-"""The columns of the result tables: names, order, meaning, symbols and units."""
+"""Columns of the result tables: names, order, meaning, symbols and units."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ INPUTS: dict[str, str] = {
     "kind": "registered name of the law",
     "method": "label of the method",
 }
-"""The first columns; ``scene.<path>`` for every scene value and ``law.<parameter>`` for every law follow."""
+"""First columns; ``scene.<path>`` for every scene value and ``law.<parameter>`` for every law follow."""
 
 
 class Column(NamedTuple):
@@ -40,7 +40,7 @@ _UNITS = {
     "time": ("s", "s"),
     "force": ("N", "N"),
 }
-"""The scales of columns: the end of the name in SI units, and the unit."""
+"""Scales of columns: the end of the name in SI units, and the unit."""
 
 COLUMNS: tuple[Column, ...] = (
     Column("mean_friction", "steady-state mean of the friction coefficient along x1, positive for belt_speed > 0",
@@ -107,12 +107,12 @@ COLUMNS: tuple[Column, ...] = (
            is_text=True),
     Column("seconds", "kernel time", "answer"),
 )  # fmt: skip
-"""The columns after the inputs, in the order of the table."""
+"""Columns after the inputs, in the order of the table."""
 
 RESULTS: dict[str, str] = {each.name: each.meaning for each in COLUMNS}
-"""What each of them is."""
+"""Meaning of each of them."""
 FROM_ORBITS: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.made == "orbit")
-"""The result columns that are read from orbits."""
+"""Result columns that are read from orbits."""
 DERIVED: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.made == "inputs")
 """Those that follow from a point's inputs and its mean friction."""
 TEXT: frozenset[str] = frozenset(each.name for each in COLUMNS if each.is_text)
@@ -138,7 +138,7 @@ SI: dict[str, InSI] = {
     for each in COLUMNS
     if each.scale
 }
-"""The columns at the end of the table of a scene given in SI units."""
+"""Columns at the end of the table of a scene given in SI units."""
 
 _SCALES = {
     "velocity": (
@@ -154,19 +154,19 @@ _SCALES = {
 ALSO_IN_SI: dict[str, tuple[str, str]] = {
     name: (f"{name}_{_UNITS[scale][0]}", scale) for scale, names in _SCALES.items() for name in names
 }
-"""Of numbers of orbits, curves, onsets, harmonics and attractors their column in SI units, and its scale."""
+"""Columns in SI units of numbers of orbits, curves, onsets, harmonics and attractors, and their scales."""
 
 IN_SI_UNITS: dict[str, str] = {
     **{name: _UNITS[made.scale][1] for name, made in SI.items() if made.scale != "load"},
     **{name: _UNITS[scale][1] for name, scale in ALSO_IN_SI.values()},
 }
-"""Of the columns of results in SI units their unit, but for friction forces, which stay in N."""
+"""Units of the columns of results in SI units, but for friction forces, which stay in N."""
 
 OF_SHAPE = (
     *("normalized_friction", "velocity_ratio", "velocity_amplitude"),
     *("reversals", "stick_fraction"),
 )
-"""The result columns that the measures of a curve's shape are read from, besides the mean and its error."""
+"""Result columns that the measures of a curve's shape are read from, besides the mean and its error."""
 OF_REST = "status", "stick_fraction", "reversals"
 """Those between which stick and reversal begin and end."""
 
@@ -183,7 +183,7 @@ DEFAULT: tuple[str, ...] = (
     ),
     "model",
 )
-"""The result columns where none are asked for, each only where some row has it."""
+"""Result columns where none are asked for, each only where some row has it."""
 
 ALL, USUAL, SHAPE, ONSETS_GROUP = "all", "usual", "shape", "onsets"
 GROUPS: dict[str, str] = {
@@ -209,21 +209,21 @@ _OF_TABLES = {
 
 
 def columns_of(group: str) -> tuple[str, ...]:
-    """The result columns of a group."""
+    """Return the result columns of a group."""
     if group == ALL:
         return tuple(each.name for each in COLUMNS if each.group != "drift")
     return _OF_TABLES.get(group) or tuple(each.name for each in COLUMNS if each.group == group)
 
 
 def asks_for(asked: Iterable[str] | None, group: str) -> bool:
-    """Whether the names of columns and groups ask for this group."""
+    """Check whether the names of columns and groups ask for this group."""
     return asked is not None and bool({group, ALL} & {*asked})
 
 
 BELT_SPEED = "scene.belt_speed"
 _GIVEN_IN_SI = "scene.dimensional."
 BELT_SPEEDS = (BELT_SPEED, f"{_GIVEN_IN_SI}belt_speed_m_per_s")
-"""The abscissa of a curve: the belt speed, nondimensional or in m/s."""
+"""Abscissa of a curve: the belt speed, nondimensional or in m/s."""
 SCALED = "law.nondimensional."
 """Prefix of the columns with the nondimensional parameters of a law that is given in SI units."""
 
@@ -233,7 +233,7 @@ SHOWN_IN = " in "
 
 
 def without_shown_unit(name: str) -> str:
-    """The name of a column as tables of a run have it."""
+    """Return the name of a column as tables of a run have it."""
     return name.partition(SHOWN_IN)[0]
 
 
@@ -243,17 +243,17 @@ def by_plain_names(names: Iterable[str]) -> dict[str, str]:
 
 
 def shown_column(names: Iterable[str], name: str) -> str:
-    """The column among these of a number of orbits, curves, harmonics or attractors: that in SI units, if there."""
+    """Column among these of a number of orbits, curves, harmonics or attractors: that in SI units, if there."""
     return by_plain_names(names).get(ALSO_IN_SI[name][0], name) if name in ALSO_IN_SI else name
 
 
 def is_belt_speed(name: str) -> bool:
-    """Whether a column is the belt speed, in whatever unit."""
+    """Check whether a column is the belt speed, in whatever unit."""
     return without_shown_unit(name) in BELT_SPEEDS
 
 
 def belt_speed(names: Iterable[str]) -> str:
-    """The column of the belt speed, in the units in which the scene was given."""
+    """Return the column of the belt speed, in the units in which the scene was given."""
     return next((name for name in names if without_shown_unit(name) == BELT_SPEEDS[1]), BELT_SPEED)
 
 
@@ -262,7 +262,7 @@ SHOWN_IN_PART = "shown in part"
 
 
 def leading(names: Sequence[str], cells: Mapping[str, Sequence[Any]]) -> list[str]:
-    """Of these inputs those whose values do not follow from those of another, law by law, as linked ones do.
+    """Return those inputs whose values do not follow from those of another, law by law, as linked ones do.
 
     Of two that follow from each other the first. cells: of each input and of ``law``, row by row.
     """
@@ -274,7 +274,7 @@ def leading(names: Sequence[str], cells: Mapping[str, Sequence[Any]]) -> list[st
 
 
 def _follows(name: str, other: str, cells: Mapping[str, Sequence[Any]]) -> bool:
-    """Whether rows of one law with the same value of the other have the same value of this."""
+    """Check whether rows of one law with the same value of the other have the same value of this."""
     known: dict[tuple[Any, Any], Any] = {}
     for law, given, value in zip(cells["law"], cells[other], cells[name], strict=True):
         own = _comparable(value)
@@ -289,14 +289,14 @@ def _comparable(cell: Any) -> Any:
 
 
 def given(names: Iterable[str]) -> list[str]:
-    """The columns of scene and law values in the units in which they were given."""
+    """Return the columns of scene and law values in the units in which they were given."""
     columns = [name for name in names if name.startswith(("scene.", "law.")) and not name.startswith(SCALED)]
     in_si = [name for name in columns if name.startswith((_GIVEN_IN_SI, "law."))]
     return in_si if any(name.startswith(_GIVEN_IN_SI) for name in columns) else columns
 
 
 def selected(asked: Iterable[str] | None, needed: Iterable[str] = ()) -> frozenset[str]:
-    """The result columns of a table that is asked for these columns and groups, in both scales.
+    """Return the result columns of a table that is asked for these columns and groups, in both scales.
 
     None: the default ones. needed: besides. Each table has those of ``ALWAYS``.
     """
@@ -306,7 +306,7 @@ def selected(asked: Iterable[str] | None, needed: Iterable[str] = ()) -> frozens
 
 
 def results(names: Sequence[str]) -> list[str]:
-    """The result columns of a table with these inputs."""
+    """Return the result columns of a table with these inputs."""
     return [*RESULTS, *SI] if belt_speed(names) != BELT_SPEED else [*RESULTS]
 
 
@@ -330,7 +330,7 @@ CURVES: dict[str, str] = {
     "not_unique_to": "highest belt speed of such a point; of those between, each row says whether it is one",
     "reason": "why a measure is empty",
 }
-"""The columns of the table of curves after the inputs."""
+"""Columns of the table of curves after the inputs."""
 CURVE_MEASURES: tuple[str, ...] = tuple(name for name in CURVES if f"{name}_error" in CURVES)
 """Those that measure a curve."""
 
@@ -340,7 +340,7 @@ ONSETS: dict[str, str] = {
     "belt_speed_error": "bound on its error",
     "how": "what was solved for, how the multiplier leaves (+1, -1, complex), or why it was not located",
 }
-"""The columns of the table of onsets after the inputs."""
+"""Columns of the table of onsets after the inputs."""
 
 BOUNDARIES: dict[str, str] = {
     "measure": "of a curve, a column of curves.csv",
@@ -348,7 +348,7 @@ BOUNDARIES: dict[str, str] = {
     "piece": "number of the line, where a level has several",
     "closed": "whether the line ends where it begins",
 }
-"""The columns of the table of boundaries after the inputs; after them each of the two numbers with its error."""
+"""Columns of the table of boundaries after the inputs; after them each of the two numbers with its error."""
 
 ATTRACTORS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",
@@ -365,7 +365,7 @@ ATTRACTORS: dict[str, str] = {
     "velocity": "x1' then",
     "found_from": "a start by its number, the search for a closed orbit, or the neighbour the state was carried from",
 }
-"""The columns of the table of attractors after the inputs, one row per Poincare point where a study keeps them."""
+"""Columns of the table of attractors after the inputs, one row per Poincare point where a study keeps them."""
 OF_STATES = tuple(name for name in ATTRACTORS if name not in ("point", "x", "velocity", "found_from"))
 """Those of the states of points that have several."""
 
@@ -379,7 +379,7 @@ HARMONICS: dict[str, str] = {
     "friction_in_phase": "part in phase with the velocity of that harmonic: it damps where positive",
     "friction_in_quadrature": "part that leads it by 90 degrees: inertia where positive, stiffness where negative",
 }
-"""The columns of the table of harmonics after the inputs; across the belt by these names after ``transverse_``."""
+"""Columns of the table of harmonics after the inputs; across the belt by these names after ``transverse_``."""
 
 NEEDS: dict[str, str] = {
     "curve": "the law and the swept values that tell the curve from others of its study",
@@ -397,7 +397,7 @@ NEEDS: dict[str, str] = {
     "model": "what the smaller model is",
     "reason": "why the verdict is not plain",
 }
-"""The columns of the table of needs, one row per set of things taken away from a curve."""
+"""Columns of the table of needs, one row per set of things taken away from a curve."""
 
 SHAPES: dict[str, tuple[str, ...]] = {
     "area": ("concave", "convex", "mixed", "undecided"),
@@ -548,7 +548,7 @@ _OF_RESULTS: dict[str, tuple[str, ...]] = {
 
 
 def symbol(name: str) -> str:
-    """The symbol of an input or column in mathtext; its words where it has none, else the last part of its path."""
+    """Symbol of an input or column in mathtext; its words where it has none, else the last part of its path."""
     entry = _entry(name)
     if not entry:
         return without_shown_unit(name).rpartition(".")[2].replace("_", " ")
@@ -556,7 +556,7 @@ def symbol(name: str) -> str:
 
 
 def unit_shown(name: str) -> str:
-    """The unit of an input or column in mathtext; '' where it has none."""
+    """Return the unit of an input or column in mathtext; '' where it has none."""
     shown = name.partition(SHOWN_IN)[2]
     if not shown:
         return next(iter(_entry(name)[2:]), "") or IN_SI_UNITS.get(name, "")
@@ -569,7 +569,7 @@ def typeset(unit: str) -> str:
 
 
 def plain_word(name: str) -> str:
-    """The name of an input or column alone; for one without, the last part of its path."""
+    """Return the name of an input or column alone; for one without, the last part of its path."""
     entry = _entry(name)
     return entry[0] if entry else symbol(name)
 

@@ -49,7 +49,7 @@ class Note:
 
     @property
     def settles_its_path(self) -> bool:
-        """Whether no other mistake at the same path needs to be told."""
+        """Check whether no other mistake at the same path needs to be told."""
         return self.place is None and not self.origin
 
 
@@ -78,14 +78,14 @@ class Mistake:
 
 
 class _Mistaken(Exception):
-    """What cannot be used; ``mistakes`` holds every reason."""
+    """Error of what cannot be used; ``mistakes`` holds every reason."""
 
     def __init__(self, mistakes: Sequence[Mistake]) -> None:
         self.mistakes = tuple(mistakes)
         super().__init__(self.mistakes)
 
     def __str__(self) -> str:
-        """The first mistakes, and how many more there are, as printed by the command line."""
+        """Return the first mistakes, and how many more there are, as printed by the command line."""
         shown = [str(mistake) for mistake in self.mistakes[:MOST_MISTAKES_SHOWN]]
         if more := len(self.mistakes) - len(shown):
             shown.append(f"and {more} more: correct these first")
@@ -101,7 +101,7 @@ class WrongValues(_Mistaken, ValueError):
 
 
 def _with_caret(line: str, column: int) -> list[str]:
-    """The line, cut to a readable width around the column, and a caret below the column."""
+    """Return the line, cut to a readable width around the column, and a caret below the column."""
     start = max(0, min(column - 1 - _WIDTH // 2, len(line) - _WIDTH))
     shown = line[start : start + _WIDTH]
     before = "".join("\t" if letter == "\t" else " " for letter in printable(shown[: column - 1 - start]))
@@ -117,7 +117,7 @@ def dotted(path: KeyPath) -> str:
 
 
 def closest(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str | None:
-    """The most similar name, if any is close; else the only name that begins with this one and a unit.
+    """Return the most similar name, if any is close; else the only name that begins with this one and a unit.
 
     missing: required names that were not given. One that differs by words at its end is taken first: mu, mu_kinetic.
     """
@@ -133,7 +133,7 @@ def closest(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str
 
 
 def _of_the_literature(name: str, among: Sequence[str]) -> str | None:
-    """The name here of what papers call so, if it is one of these."""
+    """Return the name here of what papers call so, if it is one of these."""
     plain = name.lower().replace("_", "")
     for wanted in (ours for theirs, ours in LITERATURE if plain in theirs.split()):
         exact = [each for each in among if each == wanted]
@@ -182,7 +182,7 @@ def did_you_mean(name: str, among: Iterable[str], missing: Iterable[str] = ()) -
 def unknown_name(
     what: str, given: str, installed: Sequence[str], told: Iterable[str] | None = None
 ) -> tuple[str, str]:
-    """The sentence for the name of a law or method that is not installed, and a suggestion.
+    """Return the sentence for the name of a law or method that is not installed, and a suggestion.
 
     told: how the installed ones are listed, where not by all their names.
     """
@@ -210,7 +210,7 @@ class Unfit:
 
 
 def value_text(value: Any) -> str:
-    """The text for a value in ``got ...``; with advice where a text is almost a number."""
+    """Return the text for a value in ``got ...``; with advice where a text is almost a number."""
     if isinstance(value, Unfit):
         return value_text(value.given)
     if value is None:
@@ -227,7 +227,7 @@ def value_text(value: Any) -> str:
 
 
 class Notation(NamedTuple):
-    """How a value is written in ``got ...``, and what a part may be given as."""
+    """Notation of a value in ``got ...``, and of what a part may be given as."""
 
     text_of: Callable[[Any], str]
     part: str
@@ -237,7 +237,7 @@ YAML = Notation(value_text, "a mapping (key: value)")
 
 
 def python_text(value: Any) -> str:
-    """The text for a value given in Python."""
+    """Return the text for a value given in Python."""
     if isinstance(value, Unfit):
         return python_text(value.given)
     if isinstance(value, type):
@@ -334,13 +334,13 @@ class Notes:
             self.all.append(Note(path, what, hint, on_key=True))
 
     def below(self, path: KeyPath) -> bool:
-        """Whether a mistake is noted at this path or under it."""
+        """Check whether a mistake is noted at this path or under it."""
         return path in self._above
 
     def mapping(
         self, value: Any, path: KeyPath, allowed: Iterable[str] | None = None
     ) -> dict[str, Any] | None:
-        """The value if it is a mapping, unknown keys noted; None, noted, if it is not."""
+        """Return the value if it is a mapping, unknown keys noted; None, noted, if it is not."""
         if not isinstance(value, dict):
             self.add(path, f"must be {YAML.part}, got {value_text(value)}")
             return None
@@ -360,7 +360,7 @@ class Notes:
             self.add(("schema",), f"must be {schema}, got {value_text(given)}")
 
     def number(self, value: Any, path: KeyPath) -> float | None:
-        """The value as a finite number; None, noted, if it is not one."""
+        """Return the value as a finite number; None, noted, if it is not one."""
         if isinstance(value, Unfit):
             got = f", got {value_text(value)}" if value.what.startswith("must be ") else ""
             self.add(path, f"{value.what}{got}")
@@ -373,14 +373,14 @@ class Notes:
         return None
 
     def positive(self, value: Any, path: KeyPath) -> float | None:
-        """The value as a finite number; None where it is none, and noted, too, where it is not > 0."""
+        """Return the value as a finite number; None where it is none, and noted, too, where it is not > 0."""
         number = self.number(value, path)
         if number is not None and number <= 0.0:
             self.add(path, f"must be > 0, got {value_text(value)}")
         return number
 
     def whole_number(self, value: Any, path: KeyPath, least: int) -> int | None:
-        """The value as a whole number of at least ``least``; None, noted, if it is not one."""
+        """Return the value as a whole number of at least ``least``; None, noted, if it is not one."""
         if isinstance(value, bool) or not isinstance(value, int):
             self.add(path, f"must be a whole number >= {least}, got {value_text(value)}")
         elif value < least:
@@ -390,7 +390,7 @@ class Notes:
         return None
 
     def text(self, value: Any, path: KeyPath) -> str:
-        """The value as text; empty, noted, if it is not text."""
+        """Return the value as text; empty, noted, if it is not text."""
         if isinstance(value, str):
             return value
         kind = "" if isinstance(value, (dict, list)) or value is None else " (put it in quotes)"
@@ -398,7 +398,7 @@ class Notes:
         return ""
 
     def one_of(self, value: Any, path: KeyPath, names: Iterable[str], meaning: str = "") -> str | None:
-        """The value if it is one of these names; None, noted, if it is not. meaning: what the names stand for."""
+        """Value if it is one of these names; None, noted, if it is not. meaning: what the names stand for."""
         allowed = list(names)
         if isinstance(value, str) and value in allowed:
             return value
@@ -413,7 +413,7 @@ class Unreadable(Exception):
 
 
 def text_of(path: Path) -> str:
-    """The text of a file. Raises Unreadable."""
+    """Return the text of a file. Raises Unreadable."""
     try:
         return path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:

@@ -25,12 +25,12 @@ _NEARLY_ONE = Decimal(1) - Decimal("1e-9")
 
 
 def printable(text: str) -> str:
-    """The text with its unseen characters as ``\\x1b`` or ``\\u2028``; tabs and line feeds stay."""
+    """Return the text with its unseen characters as ``\\x1b`` or ``\\u2028``; tabs and line feeds stay."""
     return _UNSEEN.sub(_escaped, text)
 
 
 def one_line(text: str) -> str:
-    """The same on one line: tabs and line feeds as ``\\t`` and ``\\n``, too."""
+    """Return the same on one line: tabs and line feeds as ``\\t`` and ``\\n``, too."""
     return _BREAK.sub(_escaped, printable(text))
 
 

@@ -69,7 +69,7 @@ _PLAIN = str.maketrans("⁻¹²³·", "-123*")
 
 
 class Kind(NamedTuple):
-    """What a number is: a word for it, its unit and how a person writes one."""
+    """Kind of number: a word for it, its unit and how a person writes one."""
 
     word: str
     unit: str
@@ -103,7 +103,7 @@ QUANTITIES = [
 
 
 def in_units(text: str, unit: str) -> float | Unfit:
-    """The number that a text with a unit is in this one; what is wrong with it where it is none.
+    """Return the number that a text with a unit is in this one; what is wrong with it where it is none.
 
     It keeps the text where it has a dimension.
     """
@@ -121,20 +121,20 @@ def in_units(text: str, unit: str) -> float | Unfit:
 
 
 def _meant(text: str) -> str:
-    """What to write where digits are parted by commas or spaces, as the end of a sentence."""
+    """Return what to write where digits are parted by commas or spaces, as the end of a sentence."""
     whole = re.sub(r"(?<=\d)[ ,'](?=\d)", "", text) if _THOUSANDS.fullmatch(text) else ""
     meant = [each for each in (whole, text.replace(",", ".", 1)) if _TEXT.fullmatch(each)]
     return f"; write {' or '.join(meant)}" if meant else ""
 
 
 def number_before_unit(text: str) -> float | str:
-    """The number of a text with whatever unit; the text where it is none."""
+    """Return the number of a text with whatever unit; the text where it is none."""
     read = _TEXT.fullmatch(text)
     return float(Fraction(read["number"])) if read else text
 
 
 def in_units_of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:
-    """The number of a text for a parameter of a law; of one that is not per unit normal load, where that belongs.
+    """Number of a text for a parameter of a law; of one that is not per unit normal load, where that belongs.
 
     units: of all its parameters.
     """
@@ -145,7 +145,7 @@ def in_units_of_law(text: str, name: str, units: Mapping[str, str]) -> float | U
 
 
 def unit_of_dimension(dimension: Dimension) -> str:
-    """The unit of a number with this dimension."""
+    """Return the unit of a number with this dimension."""
     powers = [(unit, getattr(dimension, name)) for name, unit in _BASE.items()]
     over = " ".join(_power(unit, power) for unit, power in powers if power > 0)
     under = [_power(unit, -power) for unit, power in powers if power < 0]
@@ -157,7 +157,7 @@ def _power(unit: str, power: int) -> str:
 
 
 def quantity_in(unit: str) -> Kind:
-    """What a number in this unit is."""
+    """Return what a number in this unit is."""
     return next((kind for kind in QUANTITIES if kind.unit == unit), Kind("a number", unit, f"2 {unit}"))
 
 
@@ -186,13 +186,13 @@ def _such_as(unit: str) -> str:
 
 
 def _kind_of(unit: Any, given: str) -> str:
-    """What a number in a unit is, in words."""
+    """Return what a number in a unit is, in words."""
     own = unit.dimensionality
     return next((str(kind) for kind in QUANTITIES if _parsed(kind.unit).dimensionality == own), f"in {given}")
 
 
 def _parsed(unit: str) -> Any:
-    """The unit as pint has it. Raises pint.UndefinedUnitError."""
+    """Return the unit as pint has it. Raises pint.UndefinedUnitError."""
     plain = _POWER.sub(r"**\1", unit.translate(_PLAIN)).replace("%", "percent").replace("°", "degree")
     return _registry().parse_units(f"1{plain.strip()}" if plain.strip().startswith("/") else plain)
 
@@ -205,7 +205,7 @@ def _registry() -> Any:
 
 
 SIX_DIGITS = 1e-5
-"""Of a number told in a sentence what rounding may have taken, relative to it."""
+"""Rounding of a number told in a sentence, relative to it."""
 _PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6}
 
 
@@ -221,7 +221,7 @@ class ShownUnit(NamedTuple):
 
 
 def units_written(values: Mapping[str, Any]) -> dict[str, ShownUnit]:
-    """The units of those numbers, by their columns, that were written as text with one."""
+    """Return the units of those numbers, by their columns, that were written as text with one."""
     written = {name: value for name, value in values.items() if isinstance(value, Written)}
     return {
         name: ShownUnit(value.unit, float(factor_of(value.unit, value.si))) for name, value in written.items()
@@ -229,7 +229,7 @@ def units_written(values: Mapping[str, Any]) -> dict[str, ShownUnit]:
 
 
 def in_shown_units(table: pd.DataFrame, written: Mapping[str, ShownUnit]) -> pd.DataFrame:
-    """The table with numbers in SI units in others, whose names say so: ``law.presliding_length in um``.
+    """Return the table with numbers in SI units in others, whose names say so: ``law.presliding_length in um``.
 
     written: the units of inputs, by their columns; without any the table stays as it is. Of what was found a speed is
     in the unit of the belt speed, all else in one of which the largest is 1 to 1000.
@@ -260,7 +260,7 @@ def as_shown(
 
 
 def handy_unit(unit: str, largest: float) -> ShownUnit:
-    """The unit with a prefix, of which the largest number is 1 to 1000; as it is where there is none."""
+    """Return the unit with a prefix, of which the largest number is 1 to 1000; as it is where there is none."""
     if not 0.0 < largest < math.inf:
         return ShownUnit(unit)
     below = [(prefix, size) for prefix, size in _PREFIXES.items() if size <= largest * (1.0 + SIX_DIGITS)]

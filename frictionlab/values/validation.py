@@ -31,18 +31,18 @@ _RecordT = TypeVar("_RecordT", bound=BaseModel)
 
 
 def nested(record: type[BaseModel], key: str) -> type[BaseModel] | None:
-    """The record a field holds, or None for a field that holds a plain value."""
+    """Return the record a field holds, or None for a field that holds a plain value."""
     return _record(record.model_fields[key].annotation)
 
 
 def _record(kind: Any) -> type[BaseModel] | None:
-    """The record among the alternatives of a type."""
+    """Return the record among the alternatives of a type."""
     kinds = (each for each in _alternatives(kind) if isinstance(each, type) and issubclass(each, BaseModel))
     return next(kinds, None)
 
 
 def _inside(kind: Any, step: str | int) -> Any:
-    """The type of a field of a record, or of an item of a list or a mapping; None if there is none."""
+    """Return the type of a field of a record, or of an item of a list or a mapping; None if there is none."""
     if (record := _record(kind)) is not None:
         return record.model_fields[step].annotation if step in record.model_fields else None
     several = (get_args(each) for each in _alternatives(kind) if get_origin(each) in (tuple, dict))
@@ -50,7 +50,7 @@ def _inside(kind: Any, step: str | int) -> Any:
 
 
 def field_name(record: type[BaseModel], key: str) -> str:
-    """The field that a key gives: that of its own name, or one that the record has it for."""
+    """Return the field that a key gives: that of its own name, or one that the record has it for."""
     other: Mapping[str, str] = getattr(record, "other_names", {})
     return other.get(key, key)
 
@@ -68,7 +68,7 @@ def field_path(record: type[BaseModel], path: str) -> str:
 
 
 def number_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
-    """The dotted paths of every number a record and those inside it can hold."""
+    """Return the dotted paths of every number a record and those inside it can hold."""
     paths: list[str] = []
     for key, field in record.model_fields.items():
         if part := nested(record, key):
@@ -79,7 +79,7 @@ def number_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
 
 
 def value_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
-    """The dotted paths of every value, number or not, a record and those inside it can hold."""
+    """Return the dotted paths of every value, number or not, a record and those inside it can hold."""
     paths: list[str] = []
     for key in record.model_fields:
         part = nested(record, key)
@@ -94,12 +94,12 @@ def _alternatives(annotation: Any) -> list[Any]:
 
 
 def wrong_value(record: type[BaseModel], key: str, value: Any) -> str | None:
-    """The mistake in a value for one field, by itself; None if there is none."""
+    """Return the mistake in a value for one field, by itself; None if there is none."""
     return checked_value(record, key, value)[1]
 
 
 def checked_value(record: type[BaseModel], key: str, value: Any) -> tuple[Any, str | None, str]:
-    """The value as a field holds it, the mistake in it and what was meant; no mistake if there is none."""
+    """Return the value as a field holds it, the mistake in it and what was meant; no mistake if there is none."""
     try:
         return _field(record, key).validate_python(value), None, ""
     except ValidationError as problem:
@@ -108,7 +108,7 @@ def checked_value(record: type[BaseModel], key: str, value: Any) -> tuple[Any, s
 
 
 def placed(path: KeyPath, what: str, value: Any) -> tuple[KeyPath, str]:
-    """Where and what a mistake is; in a value that is itself a mapping it is written ``path: what``."""
+    """Return where and what a mistake is; in a value that is itself a mapping it is written ``path: what``."""
     found = re.fullmatch(r"([\w.\[\]]+): (.*)", what, re.DOTALL)
     if not found or not isinstance(value, Mapping):
         return path, what
@@ -124,7 +124,7 @@ def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
 
 
 def record_at(record: type[BaseModel], path: KeyPath) -> type[BaseModel] | None:
-    """The record at the end of a path through nested records; None if there is none."""
+    """Return the record at the end of a path through nested records; None if there is none."""
     kind: Any = record
     for step in path:
         kind = _inside(kind, step)
@@ -132,7 +132,7 @@ def record_at(record: type[BaseModel], path: KeyPath) -> type[BaseModel] | None:
 
 
 def build_record(record: type[_RecordT], tree: Any, path: KeyPath, notes: Notes) -> _RecordT | None:
-    """The record of this mapping; None, with every mistake noted, if it cannot be built."""
+    """Return the record of this mapping; None, with every mistake noted, if it cannot be built."""
     if notes.mapping(tree, path) is None:
         return None
     nulls = dict(_nulls(record, tree))
@@ -147,7 +147,7 @@ def build_record(record: type[_RecordT], tree: Any, path: KeyPath, notes: Notes)
 
 
 def _nulls(kind: Any, given: Any) -> Iterator[tuple[KeyPath, str]]:
-    """The keys that a study leaves without a value, and what each should have."""
+    """Yield the keys that a study leaves without a value, and what each should have."""
     items = (
         enumerate(given) if isinstance(given, list) else given.items() if isinstance(given, Mapping) else ()
     )
@@ -166,7 +166,7 @@ _NULLS = {float: "a number", str: "text", tuple: "a list", dict: "a mapping"}
 
 
 def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongValues:
-    """What is wrong with values that Python code gave for a record that refuses them, in the sentences of studies."""
+    """Return the error of values given in Python for a record that refuses them, in the sentences of studies."""
     notes = Notes(notation=PYTHON)
     try:
         record.model_validate(values)
@@ -191,7 +191,7 @@ def _in_python(note: Note, name: str, values: Mapping[str, Any]) -> Mistake:
 
 
 def unnamed(record: type[BaseModel], values: Sequence[Any]) -> TypeError:
-    """What is wrong with values given without their names."""
+    """Return what is wrong with values given without their names."""
     names = list(inspect.signature(record).parameters)
     if len(values) == 1 and isinstance(values[0], Mapping):
         return TypeError(f"{record.__name__} takes its values by name: write {record.__name__}(**values)")
@@ -213,7 +213,7 @@ _MISSING = "required key is missing"
 
 
 class _Told:
-    """The mistakes of values that a record refuses, as notes.
+    """Mistakes of values that a record refuses, as notes.
 
     Of a key that is one letter off it is not told as well that the right one is missing.
     """
@@ -242,7 +242,7 @@ class _Told:
                 self._notes.add(self._at(error["loc"]), told)
 
     def _at(self, loc: KeyPath) -> KeyPath:
-        """Where the value of a field was given: under a key of its own name, or one that the record has for it."""
+        """Return the path of the value of a field: under a key of its own name, or one that the record has for it."""
         kind: Any = self._record
         given: Any = self._given
         found = list(self._path)
@@ -279,7 +279,7 @@ class _Told:
         return (*loc[:-1], closest(key, left, [name for name in required if name in left]) or key)
 
     def _mistake(self, error: Any) -> str:
-        """The sentence for a value, a part or the rules of one, where it is not noted here."""
+        """Return the sentence for a value, a part or the rules of one, where it is not noted here."""
         loc, text_of = error["loc"], self._notes.notation.text_of
         part = record_at(self._record, loc)
         if part is not None and self._is_rule(error):
@@ -291,7 +291,7 @@ class _Told:
         return ""
 
     def _rules(self, part: type[BaseModel], loc: KeyPath, message: str) -> str:
-        """What the values of a part are not together, written ``path: what; path: what`` where it is of some."""
+        """Tell the rules that the values of a part break, written ``path: what; path: what`` where it is of some."""
         said: list[tuple[KeyPath, str]] = []
         for piece in message.split("; "):
             found = re.fullmatch(r"([\w.]+): (.*)", piece, re.DOTALL)

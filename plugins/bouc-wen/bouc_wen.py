@@ -50,7 +50,7 @@ class BoucWen(CompliantLaw):
 
     @property
     def limit(self) -> float:
-        """The deflection in steady sliding [scene length]."""
+        """Return the deflection in steady sliding [scene length]."""
         return self.mu / self.bristle_stiffness
 
     def sliding_friction(self, speed: float) -> float:
@@ -58,7 +58,7 @@ class BoucWen(CompliantLaw):
         return self.mu
 
     def rate(self, v: Any, z: Any) -> Any:
-        """The slip, less what yields."""
+        """Return the slip, less what yields."""
         size = abs(z)
         if size == 0.0:
             return v
@@ -67,7 +67,7 @@ class BoucWen(CompliantLaw):
         return v - share * along * (size / self.limit) ** (self.exponent - 1.0) / self.limit * z
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """The spring's."""
+        """Return the spring's."""
         return self.bristle_stiffness * z
 
     def constant_sliding_friction(self) -> bool:
@@ -75,7 +75,7 @@ class BoucWen(CompliantLaw):
         return True
 
     def largest_deflection(self) -> float:
-        """Where the spring force is mu."""
+        """Return where the spring force is mu."""
         return self.limit
 
     def largest_rate(self, speed: float) -> float:
@@ -83,7 +83,7 @@ class BoucWen(CompliantLaw):
         return self.exponent * speed / self.limit * max(1.0, 2.0 * self.beta_share - 1.0)
 
     def elastic_unloading(self) -> bool:
-        """Where beta = gamma."""
+        """Return where beta = gamma."""
         return self.beta_share == 0.5
 
     def rate_independent(self) -> bool:
@@ -91,9 +91,9 @@ class BoucWen(CompliantLaw):
         return True
 
     def passive(self) -> bool:
-        """Where beta >= |gamma|: what the spring, stiffness z^2/2, does not store is lost."""
+        """Return where beta >= |gamma|: what the spring, stiffness z^2/2, does not store is lost."""
         return self.beta_share >= 0.5
 
     def damps_across(self, speed: float) -> bool:
-        """Where it is passive: |z2|^2 then only falls by yielding."""
+        """Return where it is passive: |z2|^2 then only falls by yielding."""
         return self.passive()

@@ -19,7 +19,7 @@ shares = st.floats(-1.0, 1.0)
 
 
 def slid(law: BoucWen, z: complex, path: complex) -> complex:
-    """The deflection after a slip along a straight path, by integration."""
+    """Return the deflection after a slip along a straight path, by integration."""
 
     def rate(_: float, pair: list[float]) -> list[float]:
         dz = law.rate(path, complex(*pair))

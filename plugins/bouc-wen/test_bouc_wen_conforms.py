@@ -1,4 +1,4 @@
-"""The law passes what any law must: the whole battery, some minutes."""
+"""Law passes what any law must: the whole battery, some minutes."""
 
 from bouc_wen import BoucWen
 from profiles import deep

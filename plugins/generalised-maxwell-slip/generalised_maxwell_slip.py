@@ -71,7 +71,7 @@ class GeneralisedMaxwellSlip(MemoryLaw):
 
     @property
     def alpha(self) -> tuple[float, ...]:
-        """The part of the sliding friction that each element holds [-]; their sum is 1."""
+        """Return the part of the sliding friction that each element holds [-]; their sum is 1."""
         return tuple(share / math.fsum(self.share) for share in self.share)
 
     @property
@@ -88,7 +88,7 @@ class GeneralisedMaxwellSlip(MemoryLaw):
         return len(self.share)
 
     def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """Of an element that slips: towards alpha s/k along the slip; none at rest, where slipping ends."""
+        """Return the rate of an element that slips: towards alpha s/k along the slip; none at rest."""
         speed = abs(v)
         if speed == 0.0:
             return 0.0 * v
@@ -96,7 +96,7 @@ class GeneralisedMaxwellSlip(MemoryLaw):
         return along - (self.attraction / stribeck_curve(self, speed)) * memory[k]
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """The springs', and viscosity."""
+        """Return the springs', and viscosity."""
         total = self.viscosity * v
         for k in range(len(self.stiffness)):
             total = total + self.stiffness[k] * memory[k]
@@ -131,7 +131,7 @@ class GeneralisedMaxwellSlip(MemoryLaw):
         return inside
 
     def constant_sliding_friction(self) -> bool:
-        """Where mu_static = mu_kinetic and viscosity = 0."""
+        """Return where mu_static = mu_kinetic and viscosity = 0."""
         return self.peak == self.mu_kinetic and self.viscosity == 0.0
 
     def steepest_fall(self) -> float:

@@ -1,4 +1,4 @@
-"""The law passes what any law must: the whole battery, some minutes."""
+"""Law passes what any law must: the whole battery, some minutes."""
 
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from profiles import deep

@@ -47,7 +47,7 @@ class MaxwellSlip(MemoryLaw):
 
     @property
     def reach(self) -> tuple[float, ...]:
-        """The deflection of each element at which its slider moves [scene length]."""
+        """Return the deflection of each element at which its slider moves [scene length]."""
         return tuple(mu / stiffness for mu, stiffness in zip(self.mu, self.stiffness, strict=True))
 
     def sliding_friction(self, speed: float) -> float:
@@ -72,14 +72,14 @@ class MaxwellSlip(MemoryLaw):
         )  # size*reach, not size^2: what a step overshot is taken back
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """The springs'."""
+        """Return the springs'."""
         total = 0.0 * v
         for k in range(len(self.stiffness)):
             total = total + self.stiffness[k] * memory[k]
         return total
 
     def deflected(self, memory: Any, path: Any) -> list[Any]:
-        """The memory after slip along a straight ``path`` [scene length], exactly: each element's as ``Jenkins``."""
+        """Memory after slip along a straight ``path`` [scene length], exactly: each element's as ``Jenkins``."""
         elements = zip(self.mu, self.stiffness, memory, strict=True)
         return [Jenkins(mu=mu, stiffness=stiffness).deflected(z, path) for mu, stiffness, z in elements]
 
@@ -110,7 +110,7 @@ class MaxwellSlip(MemoryLaw):
         return True
 
     def largest_rate(self, speed: float) -> float:
-        """Of the shortest spring: where it turns towards the slip, or comes back to its reach."""
+        """Return the rate of the shortest spring: where it turns towards the slip, or comes back to its reach."""
         quickest = 0.0
         for k in range(len(self.mu)):
             quickest = max(quickest, speed / self.reach[k])

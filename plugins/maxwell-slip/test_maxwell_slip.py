@@ -31,7 +31,7 @@ def force(law: MaxwellSlip, memory: list[float]) -> float:
 
 
 def virgin(law: MaxwellSlip, x: float) -> float:
-    """The force of the first loading, each element's own."""
+    """Return the force of the first loading, each element's own."""
     return sum(min(stiffness * x, mu) for mu, stiffness in zip(law.mu, law.stiffness, strict=True))
 
 

@@ -59,7 +59,7 @@ class RateAndState(MemoryLaw):
         return resisted(self, speed, self.slip_length / speed)
 
     def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """Of the age."""
+        """Return the rate of the age."""
         renewed = abs(v) * memory[0] / self.slip_length
         if self.heals == 1.0:
             return 1.0 - renewed
@@ -73,7 +73,7 @@ class RateAndState(MemoryLaw):
         return (resisted(self, speed, memory[0]) / speed) * v
 
     def steady(self, v: Any, k: int) -> Any:
-        """The time in which slip renews the contact."""
+        """Return the time in which slip renews the contact."""
         return self.slip_length / abs(v)
 
     def within(self, memory: Any) -> bool:
@@ -94,7 +94,7 @@ class RateAndState(MemoryLaw):
 
 
 def resisted(law: Any, speed: float, age: float) -> float:
-    """The friction coefficient at this speed and age: a asinh(exp(power)/2), without overflow."""
+    """Return the friction coefficient at this speed and age: a asinh(exp(power)/2), without overflow."""
     power = (law.mu + law.b * math.log(law.reference_speed * age / law.slip_length)) / law.a
     power = power + math.log(speed / law.reference_speed)
     return law.a * (power if power > 40.0 else math.asinh(0.5 * math.exp(power)))

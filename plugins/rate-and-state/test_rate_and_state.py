@@ -23,7 +23,7 @@ speeds = st.floats(1e-6, 1e6)
 
 
 def speed_at(law: RateAndState, friction: float, age: float) -> float:
-    """The slip speed at which the law resists so much."""
+    """Return the slip speed at which the law resists so much."""
     return math.exp(
         brentq(lambda log: law.friction(math.exp(log), [age], [0.0]) - friction, -200.0, 50.0, xtol=1e-14)
     )

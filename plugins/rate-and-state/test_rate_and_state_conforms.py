@@ -1,4 +1,4 @@
-"""The law passes what any law must: the whole battery, some minutes."""
+"""Law passes what any law must: the whole battery, some minutes."""
 
 from profiles import deep
 from rate_and_state import RateAndState

@@ -38,7 +38,7 @@ def along_without_memory(law: Any, times: Any, slips: Any, friction: Any) -> Non
 
 @njit
 def along_with_a_bristle(law: Any, times: Any, slips: Any, friction: Any, start: float, short: float) -> None:
-    """The same of one deflection, from this one. short: longest step [scene length]."""
+    """Compute friction along a path of one deflection, from this one. short: longest step [scene length]."""
     z = start
     for i in range(1, times.size):
         h = times[i] - times[i - 1]
@@ -75,7 +75,7 @@ def _runge_kutta(law: Any, v: float, h: float, memory: Any, count: int, work: An
 
 @njit
 def along_with_memory(law: Any, times: Any, slips: Any, friction: Any, memory: Any, most: int) -> None:
-    """The same of several numbers, or of such as have no direction. memory: at the start, overwritten."""
+    """Compute friction along a path of several numbers, or of such without direction. memory: overwritten."""
     work, few, many = np.zeros((3, memory.size)), np.empty_like(memory), np.empty_like(memory)
     rates = np.zeros(memory.size)
     for i in range(1, times.size):
@@ -101,7 +101,7 @@ def along_with_memory(law: Any, times: Any, slips: Any, friction: Any, memory: A
 
 @njit
 def along_with_yield(law: Any, times: Any, slips: Any, friction: Any, memory: Any, reach: Any) -> None:
-    """The same of deflections that follow the slip up to their reach, exactly."""
+    """Compute friction along a path of deflections that follow the slip up to their reach, exactly."""
     rates = np.zeros(memory.size)
     for i in range(1, times.size):
         path = slips[i] - slips[i - 1]
@@ -115,7 +115,7 @@ def along_with_yield(law: Any, times: Any, slips: Any, friction: Any, memory: An
 
 @njit
 def along_with_stick(law: Any, times: Any, slips: Any, friction: Any, memory: Any) -> None:
-    """The same of elements that remember whether they stick; all do at the start."""
+    """Compute friction along a path of elements that remember whether they stick; all do at the start."""
     sticks, rates, work = np.ones(memory.size), np.zeros(memory.size), np.zeros((3, memory.size))
     own = np.empty_like(memory)
     for i in range(1, times.size):
@@ -139,7 +139,7 @@ def along_with_stick(law: Any, times: Any, slips: Any, friction: Any, memory: An
 
 
 def friction_along(law: FrictionLaw, times: Floats, slips: Floats, first: float) -> Floats:
-    """The friction coefficient at each sample, along the slip between it and the one before.
+    """Return the friction coefficient at each sample, along the slip between it and the one before.
 
     times [scene time], rising; slips [scene length]: how far the body has slipped. first: the measured coefficient at
     the first sample, from which the memory at the start is found.
@@ -164,7 +164,7 @@ def friction_along(law: FrictionLaw, times: Floats, slips: Floats, first: float)
 
 
 def _bent(law: BristleLaw, friction: float) -> float:
-    """The deflection at which a bristle at rest carries this friction, within its reach."""
+    """Return the deflection at which a bristle at rest carries this friction, within its reach."""
     per_length = float(law.friction(0.0, 1.0, 0.0))
     reach = min(law.largest_deflection(), law.yield_deflection(), abs(law.presliding()) or math.inf)
     bent = friction / per_length if per_length else 0.0

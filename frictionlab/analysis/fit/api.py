@@ -34,7 +34,7 @@ NO_POINTS = "its measurements are slip and friction over time, without a body: u
 
 
 def measured_of(study: Study) -> Measurements:
-    """What a study's files hold. Raises WrongData, which names the file, the row and the column."""
+    """Return what a study's files hold. Raises WrongData, which names the file, the row and the column."""
     assert study.data is not None
     folder = Path() if study.path is None else study.path.parent
     tables = [_read(folder / name, dict(study.data.columns)) for name in study.data.file]
@@ -66,7 +66,7 @@ def _table(file: Path) -> pd.DataFrame:
 
 
 def at_measured_points(study: Study) -> Study:
-    """The study at the belt speeds and other inputs that were measured; as it is where it names no measurements.
+    """Study at the belt speeds and other inputs that were measured; as it is where it names no measurements.
 
     Raises WrongData.
     """
@@ -160,7 +160,7 @@ def fit_measured(
     tell: Callable[[str], None] | None = None,
     threads: int = 1,
 ) -> FittedLaws:
-    """The same of checked measurements. Raises ValueError."""
+    """Return the same of checked measurements. Raises ValueError."""
     scene = None if measured.is_path else scene
     if not measured.is_path and scene is None:
         raise ValueError(

@@ -169,7 +169,7 @@ def equivalent(
 
 
 def _changed(scene: Scene, path: str, value: float) -> Scene:
-    """The scene with this input, where it has it; a prescribed slip takes the frequency of a drive as its own."""
+    """Scene with this input, where it has it; a prescribed slip takes the frequency of a drive as its own."""
     if not path:
         return scene
     if scene.degrees_of_freedom == 0 and path == "drive.frequency":

@@ -27,7 +27,7 @@ TIMES_AS_LONG = 4.0
 
 
 def blocks_of(measured: Measurements, residuals: Floats) -> tuple[NDArray[np.int64], str]:
-    """The block of each row, from 0, and a word on where it is from."""
+    """Return the block of each row, from 0, and a word on where it is from."""
     if "block" in measured.table:
         return np.unique(measured.table["block"].astype(str), return_inverse=True)[1], "given"
     if measured.is_path and (cycles := _cycles(measured)) is not None:
@@ -42,7 +42,7 @@ def blocks_of(measured: Measurements, residuals: Floats) -> tuple[NDArray[np.int
 
 
 def autocorrelation(residuals: Floats, most: int) -> Floats:
-    """Of residuals in their order, at the lags from 0 to this one."""
+    """Compute the autocorrelation of residuals in their order, at the lags from 0 to this one."""
     apart = residuals - residuals.mean()
     size = 1 << (2 * len(apart) - 1).bit_length()
     spectrum = np.abs(np.fft.rfft(apart, size)) ** 2
@@ -80,14 +80,14 @@ def _cycles(measured: Measurements) -> NDArray[np.int64] | None:
 
 
 LEVEL = 0.95
-"""Of every interval."""
+"""Share of fits whose interval holds the true number."""
 UNSEEN = 1e-10
 """Share of the largest curvature below which a direction is not seen at all: its error is that of this share."""
 
 
 @dataclass(frozen=True, eq=False)
 class Covariances:
-    """Of the shares of the ranges. naive: residuals independent, of one size; by_blocks: by the jackknife.
+    """Covariances of the shares of the ranges. naive: of independent residuals of one size; by_blocks: by jackknife.
 
     scale: variance of a residual over its stated one; quantile: standard errors of a two-sided interval of ``LEVEL``.
     """

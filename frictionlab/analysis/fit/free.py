@@ -1,4 +1,4 @@
-"""The numbers that a fit may change: of a law and of its scene, each within its range, on an even or a log scale."""
+"""Numbers that a fit may change: of a law and of its scene, each within its range, on an even or a log scale."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class FreeNumber:
         return float(self.low + share * (self.high - self.low))
 
     def share(self, value: float) -> float:
-        """The share of the range at which a value is."""
+        """Return the share of the range at which a value is."""
         if self.by_log:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
@@ -60,21 +60,21 @@ class Model:
 
     @property
     def label(self) -> str:
-        """What tables call the law."""
+        """Return what tables call the law."""
         return self.law.label or type(self.law).__name__
 
     @property
     def words(self) -> str:
-        """What sentences and figures call it."""
+        """Return what sentences and figures call it."""
         own = self.law.label not in ("", kind_of(self.law))
         return self.label if own else type(self.law).in_words or self.label
 
     def values(self, shares: Floats) -> dict[str, float]:
-        """The free numbers at these shares of their ranges."""
+        """Return the free numbers at these shares of their ranges."""
         return {each.name: each.value(float(share)) for each, share in zip(self.free, shares, strict=True)}
 
     def at(self, shares: Floats) -> tuple[FrictionLaw, Scene | None]:
-        """The law and the scene at these shares. Raises ValueError where they are none."""
+        """Return the law and the scene at these shares. Raises ValueError where they are none."""
         values = self.values(shares)
         of_scene = {name.removeprefix("scene."): x for name, x in values.items() if name.startswith("scene.")}
         of_law = {name: x for name, x in values.items() if not name.startswith("scene.")}
@@ -83,7 +83,7 @@ class Model:
 
 
 def with_numbers(law: FrictionLaw, values: Mapping[str, float]) -> FrictionLaw:
-    """The law with these numbers in place of its own; one of several in a list by ``name[0]``."""
+    """Return the law with these numbers in place of its own; one of several in a list by ``name[0]``."""
     told = given_values(law)
     for name, value in values.items():
         for group in INSTEAD:
@@ -102,7 +102,7 @@ def with_numbers(law: FrictionLaw, values: Mapping[str, float]) -> FrictionLaw:
 def free_numbers(
     given: Mapping[str, Any], laws: Sequence[FrictionLaw], scene: Scene | None
 ) -> dict[int, tuple[FreeNumber, ...]]:
-    """Of each law, by its place, the free numbers that it has. Raises ValueError for a name that nothing has."""
+    """Return the free numbers of each law, by its place. Raises ValueError for a name that nothing has."""
     if not isinstance(given, Mapping) or not given:
         raise ValueError(f"free must be a mapping such as {{'mu': (0.1, 1.0)}}, got {given!r}")
     of_scene = {} if scene is None else _numbers_of(scene.given_values(), "scene.")

@@ -22,7 +22,7 @@ from frictionlab.values.quantities import Floats
 from frictionlab.values.validation import field_path, number_paths
 
 OF_A_PATH = ("time", "slip", "friction")
-"""The columns that a path of slip needs."""
+"""Columns that a path of slip needs."""
 OTHERS = ("sigma", "block")
 GAP = 3.0
 """A step of time so many times the usual one is a gap: what was remembered before it is not known after it."""
@@ -43,22 +43,22 @@ class Measurements:
 
     @property
     def is_path(self) -> bool:
-        """Whether it is slip and friction over time, without a body."""
+        """Check whether it is slip and friction over time, without a body."""
         return self.value == "friction"
 
     @cached_property
     def values(self) -> Floats:
-        """What was measured."""
+        """Return what was measured."""
         return self.table[self.value].to_numpy(dtype=float)
 
     @cached_property
     def sigma(self) -> Floats | None:
-        """The stated standard error of each row, where one is stated."""
+        """Return the stated standard error of each row, where one is stated."""
         return self.table["sigma"].to_numpy(dtype=float) if "sigma" in self.table else None
 
     @cached_property
     def pieces(self) -> list[slice]:
-        """Of a path the rows between gaps of time and missing samples."""
+        """Return the rows of a path between gaps of time and missing samples."""
         times = self.table["time"].to_numpy(dtype=float)
         steps = np.diff(times)
         far = steps > GAP * np.median(steps) if steps.size else steps > 0.0
@@ -67,7 +67,7 @@ class Measurements:
 
     @cached_property
     def groups(self) -> list[tuple[dict[str, float], NDArray[np.int64]]]:
-        """Of a curve the inputs of each scene, by path, and its rows."""
+        """Return the inputs of each scene of a curve, by path, and its rows."""
         inputs = [name for name in self.table if name.startswith("scene.")]
         if not inputs:
             return [({}, np.arange(len(self.table)))]
@@ -80,18 +80,18 @@ class Measurements:
 
     @property
     def scenes_rising(self) -> list[NDArray[np.int64]]:
-        """Of a curve the rows of each scene, their belt speeds rising."""
+        """Return the rows of each scene of a curve, their belt speeds rising."""
         speeds = self.table[self.along].to_numpy(dtype=float)
         return [places[np.argsort(speeds[places], kind="stable")] for _, places in self.groups]
 
     @property
     def speed(self) -> str:
-        """Of a curve the input of a study that its belt speeds are."""
+        """Return the input of a study that the belt speeds of a curve are."""
         return BELT_SPEEDS[self.along.endswith("_m_per_s")]
 
     @property
     def along(self) -> str:
-        """The column that residuals are told along."""
+        """Return the column that residuals are told along."""
         return "time" if self.is_path else next(name for name in self.table if name.startswith("belt_speed"))
 
 

@@ -20,16 +20,16 @@ ProfileForm = Literal["bounded", "one-sided", "flat", "multimodal"]
 PLACES = 11
 """Values at which a number is held, over its range."""
 TRIES_OF_AN_END = 5
-"""Of an end of an interval between two of them: the root of the rise is nearly straight there."""
+"""Most tries of an end of an interval between two places: the root of the rise is nearly straight there."""
 ROUGH = 1e-5
 """Relative closeness of a profile's minima."""
 NEAR_ENOUGH = 0.02
-"""Of the rise at an end to its threshold."""
+"""Difference of the rise at an end from its threshold that is near enough."""
 
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Of one number: the ends of its interval, in shares of its range; form: its shape in a word."""
+    """Profile of one number: the ends of its interval, in shares of its range; form: its shape in a word."""
 
     low: float
     high: float
@@ -39,7 +39,7 @@ class Profile:
 def profile(
     residuals: Residuals, best: Optimum, number: int, threshold: float, others: list[Optimum]
 ) -> Profile:
-    """Of the number at this place. threshold: rise of twice the cost at the ends of the interval; others: minima."""
+    """Return the profile of the number at a place. threshold: rise of twice the cost at its ends; others: minima."""
     moves = np.arange(len(best.shares)) != number
     held = float(best.shares[number])
 
@@ -83,7 +83,7 @@ def _end(
     beside: Callable[[float, Optimum], Optimum],
     rise: Callable[[Optimum], float],
 ) -> float:
-    """Where the rise first reaches its threshold on one side; the end of the range where it does not."""
+    """Return where the rise first reaches its threshold on one side; the end of the range where it does not."""
     place = at
     while 0 <= place + step < len(grid) and rises[place + step] <= 1.0:
         place += step
@@ -131,13 +131,13 @@ class LeftOut:
         return float(self.squares.std(ddof=1) / np.sqrt(len(self.squares)) / (2.0 * self.rms or 1.0))
 
     def apart(self, other: LeftOut) -> tuple[float, float]:
-        """How much larger the mean square is than another's, part by part, and the standard error of that."""
+        """Return how much larger the mean square is than another's, part by part, and the standard error of that."""
         more = self.squares - other.squares
         return float(more.mean()), float(more.std(ddof=1) / np.sqrt(len(more)))
 
 
 def without_blocks(residuals: Residuals, best: Optimum, blocks: NDArray[np.int64]) -> LeftOut:
-    """Of a model at its optimum."""
+    """Return the profiles of a model at its optimum."""
     count = int(blocks.max()) + 1
     parts = blocks * min(FOLDS, count) // count
     weights, squares = residuals.weights, []

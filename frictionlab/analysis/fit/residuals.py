@@ -1,4 +1,4 @@
-"""What a model says at the points of measurements, and how far that is from what was measured.
+"""Answers of a model at the points of measurements, and their distance from what was measured.
 
 Least squares from many starts: where each ends, which end is best, and how many agree with it.
 """
@@ -55,7 +55,7 @@ class Residuals:
         self.weights = np.ones(len(values)) if self.measured.sigma is None else 1.0 / self.measured.sigma
 
     def said(self, shares: Floats) -> Floats:
-        """What the model says, row by row; NaN where it has no number."""
+        """Return what the model says, row by row; NaN where it has no number."""
         key = np.asarray(shares, dtype=float).tobytes()
         found = self._known.get(key)
         if found is None:
@@ -80,7 +80,7 @@ class Residuals:
         return np.where(np.isnan(apart), UNANSWERED_AS * self.spread, apart)
 
     def __call__(self, shares: Floats) -> Floats:
-        """The same over the stated standard errors, where there are some."""
+        """Return the same over the stated standard errors, where there are some."""
         return self.raw(shares) * self.weights
 
     def slopes(self, shares: Floats, numbers: Iterable[int] | None = None) -> Floats:
@@ -129,7 +129,7 @@ ON_A_BOUND = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """Where a search ended: shares of the ranges, residuals over their standard errors, half their sum of squares."""
+    """End of a search: shares of the ranges, residuals over their standard errors, half their sum of squares."""
 
     shares: Floats
     residuals: Floats
@@ -138,7 +138,7 @@ class Optimum:
 
 @dataclass(frozen=True, eq=False)
 class SearchEnds:
-    """The best of all ends, other minima, and how many starts ended at the best."""
+    """Best of all ends, other minima, and how many starts ended at the best."""
 
     best: Optimum
     others: list[Optimum]
@@ -170,7 +170,7 @@ def search(
 def descend(
     residuals: Residuals, start: Floats, moving: NDArray[np.bool_] | None = None, closeness: float = 1e-8
 ) -> Optimum:
-    """The minimum next to a start. moving: which numbers may move, all where left out. closeness: relative."""
+    """Return the minimum next to a start. moving: which numbers may move, all where left out. closeness: relative."""
     moves = np.ones(len(start), np.bool_) if moving is None else moving
     if not moves.any():
         found = residuals(start)

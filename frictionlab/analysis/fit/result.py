@@ -1,4 +1,4 @@
-"""What a fit found: numbers with errors and intervals for each law, how well each foretells, and sentences."""
+"""Results of a fit: numbers with errors and intervals for each law, how well each foretells, and sentences."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ class FittedLaw:
 
     @property
     def model(self) -> Model:
-        """The law, its scene and its free numbers."""
+        """Return the law, its scene and its free numbers."""
         return self.residuals.model
 
     @cached_property
     def said(self) -> Floats:
-        """What it says at each row."""
+        """Return what it says at each row."""
         return self.residuals.said(self.found.best.shares)
 
     @property
@@ -56,7 +56,7 @@ class FittedLaw:
         return self.said - self.residuals.measured.values
 
     def autocorrelation(self, order: NDArray[np.int64], most: int) -> Floats:
-        """Of what is left, in this order of rows, up to this lag."""
+        """Autocorrelation of what is left, in this order of rows, up to this lag."""
         return autocorrelation(self.raw[order], most)
 
     @property
@@ -66,7 +66,7 @@ class FittedLaw:
 
     @cached_property
     def covariances(self) -> Covariances:
-        """Of the shares of the ranges; the numbers on an end of their range held."""
+        """Covariances of the shares of the ranges; numbers on an end of their range are held."""
         free = [place for place, bound in enumerate(self.on_a_bound) if not bound]
         slopes = np.zeros((len(self.raw), len(self.on_a_bound)))
         if free:
@@ -76,7 +76,7 @@ class FittedLaw:
 
     @cached_property
     def profiles(self) -> tuple[Profile, ...]:
-        """Of each number."""
+        """Profile of each number."""
         errors = self.covariances
         rises = np.maximum(errors.scale * (errors.quantile * errors.inflation) ** 2, 1e-300)
         return tuple(
@@ -86,13 +86,13 @@ class FittedLaw:
 
     @cached_property
     def left_out(self) -> LeftOut:
-        """How well it foretells blocks that it was not fitted to."""
+        """Return how well it foretells blocks that it was not fitted to."""
         parts = self.blocks if self.parts is None else self.parts
         return without_blocks(self.residuals, self.found.best, parts)
 
     @property
     def values(self) -> dict[str, float]:
-        """The fitted numbers."""
+        """Return the fitted numbers."""
         return self.model.values(self.found.best.shares)
 
     def errors(self, covariance: Floats) -> dict[str, float]:
@@ -112,7 +112,7 @@ class FittedLaw:
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """Of 95 %, by profiles that rise as blocks scatter."""
+        """Intervals of 95 %, by profiles that rise as blocks scatter."""
         return {
             each.name: (each.value(one.low), each.value(one.high))
             for each, one in zip(self.model.free, self.profiles, strict=True)
@@ -120,7 +120,7 @@ class FittedLaw:
 
     @property
     def shapes(self) -> dict[str, str]:
-        """Of each profile, in a word."""
+        """Shape of each profile, in a word."""
         return {each.name: one.form for each, one in zip(self.model.free, self.profiles, strict=True)}
 
     @property

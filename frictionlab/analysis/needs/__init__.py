@@ -1,1 +1,1 @@
-"""What a scene needs: its parts taken away one at a time, and the smallest model within a tolerance."""
+"""Needs of a scene: its parts taken away one at a time, and the smallest model within a tolerance."""

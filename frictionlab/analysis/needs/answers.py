@@ -1,4 +1,4 @@
-"""The curves of models, and what one changes of another: the mean, the reduction and the shape, with errors."""
+"""Curves of models, and what one changes of another: the mean, the reduction and the shape, with errors."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ NOWHERE = Estimate(math.nan, math.nan)
 
 
 class Curves:
-    """The curves of models along the belt speeds of some scenes, each solved once.
+    """Curves of models along the belt speeds of some scenes, each solved once.
 
     speeds: these in the scale of the scene; given: as they were given [m/s for scenes in SI units].
     kinds: registered names of laws beside the installed ones. seconds_per_point: the time a point may take [s].
@@ -65,7 +65,7 @@ class Curves:
             self._known[each] = table.iloc[rows.start : rows.stop].reset_index(drop=True)
 
     def of(self, model: LesserModel) -> pd.DataFrame:
-        """The table of a model, a row per belt speed."""
+        """Return the table of a model, a row per belt speed."""
         self.solve([model])
         table = self._known[LesserModel(model.scene, model.law)]
         return table if model.way is None else self._reduced(model, model.way, table)
@@ -74,7 +74,7 @@ class Curves:
         return self._kinds.get(type(model.law)) or kind_of(model.law)
 
     def _reduced(self, model: LesserModel, way: MotionWay, full: pd.DataFrame) -> pd.DataFrame:
-        """The table with the means of a reduced model in place of those of the full motion."""
+        """Return the table with the means of a reduced model in place of those of the full motion."""
         scenes = Scenes(model.scene, self.speeds)
         means = np.asarray(way.model_means(scenes, model.law)).real
         derived = derived_columns(scenes, model.law, means)
@@ -113,14 +113,14 @@ class Change:
 
     @property
     def turns(self) -> bool:
-        """Whether both curves have a shape that is decided, and another one."""
+        """Check whether both curves have a shape that is decided, and another one."""
         return self.shapes[0] != self.shapes[1] and not {"", "undecided"} & set(self.shapes)
 
 
 def change_of_curve(
     full: pd.DataFrame, other: pd.DataFrame, speeds: Floats, within: float, laws: registry.Laws
 ) -> Change:
-    """Of the other table against that of the full scene, row by row at these belt speeds."""
+    """Return the change of the other table against that of the full scene, row by row at these belt speeds."""
     asked = (full["status"] == "ok").to_numpy()
     known = asked & (other["status"] == "ok").to_numpy()
     why = _without_answer(other, asked & ~known, int(asked.sum()))
@@ -143,7 +143,7 @@ def change_of_curve(
 
 
 def _measures(table: pd.DataFrame, laws: registry.Laws) -> tuple[Estimate, str]:
-    """Of a curve its reduction, largest 1 - m/steady, and the verdict on its shape, '' where none is read."""
+    """Return the reduction of a curve, largest 1 - m/steady, and the verdict on its shape, '' where none is read."""
     curves = curve_table(table, laws)
     if not curves.empty:
         row = curves.iloc[0]
@@ -167,5 +167,5 @@ def _without_answer(table: pd.DataFrame, places: Floats, asked: int) -> str:
 
 
 def commonest_reason(rows: pd.DataFrame) -> str:
-    """Of rows without a number the status and the reason that most have."""
+    """Return the status and the reason that most rows without a number have."""
     return str((rows["status"] + ": " + rows["reason"].astype("str")).value_counts().index[0])

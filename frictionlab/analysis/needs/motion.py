@@ -1,4 +1,4 @@
-"""What may go from the way the motion is found: friction's effect on it, its higher harmonics, stick.
+"""Simpler ways to find the motion, without friction's effect on it, its higher harmonics, stick.
 
 A scene and a law with some of their parts taken away, and the way its motion is found.
 """
@@ -36,7 +36,7 @@ class MotionWay(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Return what it is called."""
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Why it cannot do this scene and law; None where it can."""
@@ -55,7 +55,7 @@ class LesserModel:
 
     @property
     def method(self) -> MotionWay | str:
-        """What solves it: a reduced model, or ``auto``."""
+        """Return what solves it: a reduced model, or ``auto``."""
         return self.way or "auto"
 
     def with_scene(self, **changes: Any) -> LesserModel:
@@ -89,13 +89,13 @@ ON_SAMPLES = (
 )
 NOT_SINES = "the motion without rest is known for one sine along the belt under a constant normal load"
 FRICTION_FREE = "mdsm"
-"""The method of the friction-free motion."""
+"""Method of the friction-free motion."""
 ORDERS_KEPT = (1, 3, 5, 9)
 """Harmonics to which the motion is cut."""
 
 
 def friction_free_of(model: LesserModel) -> LesserModel | None:
-    """The motion as if there were no friction, friction averaged over it."""
+    """Return the motion as if there were no friction, friction averaged over it."""
     if model.scene.degrees_of_freedom == 0:
         return None
     if model.scene.undriven:
@@ -107,7 +107,7 @@ def friction_free_of(model: LesserModel) -> LesserModel | None:
 
 
 def cut_to(harmonics: int) -> Taken:
-    """The motion and friction cut to so many harmonics, which balance."""
+    """Return the motion and friction cut to so many harmonics, which balance."""
     return partial(_balanced, harmonics)
 
 
@@ -120,7 +120,7 @@ def _balanced(harmonics: int, model: LesserModel) -> LesserModel | None:
 
 
 def orders() -> tuple[int, ...]:
-    """The numbers of harmonics that the installed balance can be cut to."""
+    """Return the numbers of harmonics that the installed balance can be cut to."""
     several = "harmonics" in registry.method_class("harmonic_balance").model_fields
     return ORDERS_KEPT if several else ORDERS_KEPT[:1]
 
@@ -131,7 +131,7 @@ def _method(name: str, **parameters: Any) -> MotionWay:
 
 
 def _prescribed(model: LesserModel) -> Scene:
-    """The scene of the friction-free motion as a prescribed slip. Raises CannotGo."""
+    """Return the scene of the friction-free motion as a prescribed slip. Raises CannotGo."""
     scene, law = model.scene, model.law
     if scene.bends:
         raise CannotGo(BENT_MOTION)
@@ -183,12 +183,12 @@ def _oscillation(velocity: Piecewise, frequency: float) -> dict[str, Any]:
 
 
 def slipping(model: LesserModel) -> LesserModel | None:
-    """The motion that never rests."""
+    """Return the motion that never rests."""
     return None if model.scene.degrees_of_freedom == 0 else model.with_way(WithoutRest())
 
 
 class WithoutRest:
-    """The motion of two reversals a period with all its harmonics, consistent with friction at rest or not."""
+    """Motion of two reversals a period with all its harmonics, consistent with friction at rest or not."""
 
     name = "two reversals"
 

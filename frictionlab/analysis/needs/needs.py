@@ -1,4 +1,4 @@
-"""What a scene needs: ``fl.needs``, and the same of every curve of a study.
+"""Needs of a scene: ``fl.needs``, and the same of every curve of a study.
 
 What one curve needs: the table of everything taken away, the same in sentences, and the smallest model.
 """
@@ -44,7 +44,7 @@ WHERE_IT_MOVES = {
 
 
 class GivenUnits(NamedTuple):
-    """The scales of a scene in SI units, and the unit of its belt speeds."""
+    """Scales of a scene in SI units, and the unit of its belt speeds."""
 
     scales: Units
     speed: ShownUnit
@@ -125,7 +125,7 @@ def needs_from(
     within: float,
     units: GivenUnits | None = None,
 ) -> Needs:
-    """The result for a full model with these answers. rows: what was taken away, the smallest model among them."""
+    """Result for a full model with these answers. rows: what was taken away, the smallest model among them."""
     told = [*missing_means(answers), *(sentence_of(each, units) for each in rows)]
     if (answers["status"] == "ok").any():
         told.append(smallest_in_words(smallest, full, within, units))
@@ -156,7 +156,7 @@ def _record(each: Without, within: float, smallest: bool, units: GivenUnits | No
 
 
 def model_in_words(model: LesserModel, units: GivenUnits | None = None) -> str:
-    """What a model still has."""
+    """Return what a model still has."""
     values = model.law.model_dump(exclude_none=True, mode="json", exclude_defaults=True)
     if units is not None:
         values |= {
@@ -188,7 +188,7 @@ def _way_in_words(way: MotionWay) -> str:
 
 
 def sentence_of(each: Without, units: GivenUnits | None = None) -> str:
-    """Whether what is gone is needed, and what the mean changes by without it."""
+    """Check whether what is gone is needed, and what the mean changes by without it."""
     names = " and ".join(each.names)
     plural = len(each.names) > 1 or names.startswith("harmonics")
     verb, it = ("are", "them") if plural else ("is", "it")
@@ -206,7 +206,7 @@ def sentence_of(each: Without, units: GivenUnits | None = None) -> str:
 def smallest_in_words(
     smallest: Without | None, full: LesserModel, within: float, units: GivenUnits | None = None
 ) -> str:
-    """The smallest model, what it is without, and what that changes."""
+    """Return the smallest model, what it is without, and what that changes."""
     if smallest is None or smallest.model is None:
         return f"the smallest model within {within:.3g} is the full one: {model_in_words(full, units)}"
     *names, last = smallest.names
@@ -216,7 +216,7 @@ def smallest_in_words(
 
 
 def _changes(each: Without, units: GivenUnits | None) -> str:
-    """The change by its magnitude, and its error where that is not small beside it."""
+    """Return the change by its magnitude, and its error where that is not small beside it."""
     speed = each.change.belt_speed
     mean, at = (
         each.change.mean,
@@ -230,7 +230,7 @@ def _changes(each: Without, units: GivenUnits | None) -> str:
 
 
 def missing_means(answers: pd.DataFrame) -> list[str]:
-    """What is said of belt speeds at which the full scene has no one mean."""
+    """Return what is said of belt speeds at which the full scene has no one mean."""
     rest = answers[answers["status"] != "ok"]
     if rest.empty:
         return []
@@ -242,9 +242,9 @@ def missing_means(answers: pd.DataFrame) -> list[str]:
 
 
 USUAL_SHARE = 0.01
-"""The tolerance on the mean, of the friction of steady sliding at the quickest belt speed, where none is given."""
+"""Tolerance on the mean, of the friction of steady sliding at the quickest belt speed, where none is given."""
 ANSWERS_FINER = 1e-3
-"""The error of the means asked for, of that tolerance."""
+"""Error of the means asked for, of that tolerance."""
 
 
 @dataclass(frozen=True)
@@ -314,7 +314,7 @@ def needs(
 
 
 def needs_of_study(study: Study, within: float | None = None) -> Iterator[Needs]:
-    """The same of every curve of a study, whatever its methods and its tolerance. Raises BrokenPlugin."""
+    """Yield the same of every curve of a study, whatever its methods and its tolerance. Raises BrokenPlugin."""
     kinds = {choice.law_class: choice.kind for choice in study.laws}
     laws = registry.Laws({choice.kind: choice.law_class for choice in study.laws})
     asked = _Asked(laws, kinds, study.limit.seconds_per_point, study.units.get(BELT_SPEEDS[1]))
@@ -327,7 +327,7 @@ def needs_of_study(study: Study, within: float | None = None) -> Iterator[Needs]
 
 
 def _label(study: Study, curve: StudyCurve) -> str:
-    """The law and the swept values that tell a curve from the others of its study."""
+    """Return the law and the swept values that tell a curve from the others of its study."""
     scene, law = curve.scenes.scene.values(), curve.given_law.model_dump(mode="json")
     told = [curve.law_label] if len(study.laws) > 1 else []
     for path in study.sweep:

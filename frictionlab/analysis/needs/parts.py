@@ -39,7 +39,7 @@ def sines(model: LesserModel) -> LesserModel | None:
 
 
 def steady_normal_load(model: LesserModel) -> LesserModel | None:
-    """The normal load at its mean throughout."""
+    """Return the normal load at its mean throughout."""
     scene = model.scene
     part, belt = scene.normal_load_variation, scene.belt_vibration
     if part is None:
@@ -54,7 +54,7 @@ def steady_normal_load(model: LesserModel) -> LesserModel | None:
 
 
 def without_term(name: str) -> Callable[[LesserModel], LesserModel | None]:
-    """The body without this key of ``body``."""
+    """Return the body without this key of ``body``."""
 
     def taken(model: LesserModel) -> LesserModel | None:
         terms, without = model.scene.body_terms, Body.model_fields[name].default
@@ -66,7 +66,7 @@ def without_term(name: str) -> Callable[[LesserModel], LesserModel | None]:
 
 
 def without_load_across(model: LesserModel) -> LesserModel | None:
-    """The body free to move across the belt, but without a load that way."""
+    """Return the body free to move across the belt, but without a load that way."""
     scene = model.scene
     if scene.transverse is None:
         return None
@@ -76,7 +76,7 @@ def without_load_across(model: LesserModel) -> LesserModel | None:
 
 
 def on_a_line(model: LesserModel) -> LesserModel | None:
-    """The motion along the belt alone."""
+    """Return the motion along the belt alone."""
     scene = model.scene
     if not scene.planar:
         return None
@@ -98,12 +98,12 @@ def _part(scene: Scene, path: str) -> Any:
 
 
 def _size(part: Any) -> tuple[str, float]:
-    """The name of its amplitude, and that."""
+    """Return the name of its amplitude, and that."""
     return next((name, size) for name in SIZES if (size := getattr(part, name, None)) is not None)
 
 
 def _along(scene: Scene, path: str) -> dict[str, Any]:
-    """Of a part at an angle to the belt that along it; nothing of any other. Raises CannotGo."""
+    """Return a part at an angle to the belt turned along it; nothing for any other. Raises CannotGo."""
     part = _part(scene, path)
     if part is None or not part.direction:
         return {}

@@ -84,17 +84,17 @@ class Without:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is gone."""
+        """Return what is gone."""
         return tuple(thing.name for thing in self.gone)
 
     @property
     def may_go(self) -> bool:
-        """Whether the change is within the tolerance, its error included."""
+        """Check whether the change is within the tolerance, its error included."""
         return self.change.verdict == "not needed"
 
     @property
     def asks_for_others(self) -> bool:
-        """Whether a thing that cannot go alone may go once others have: a way to find the motion asks for those."""
+        """Check whether a thing that cannot go alone may go once others have: some ways to find motions ask."""
         return self.model is None and self.gone[0].group == "motion"
 
 
@@ -122,7 +122,7 @@ class LeastSearch:
         return self._all([_most(singles)] if len(_most(singles)) > 2 else [])
 
     def smallest(self, singles: Sequence[Without], pairs: Sequence[Without]) -> Without | None:
-        """The model that takes most away within the tolerance; None where nothing may go.
+        """Return the model that takes most away within the tolerance; None where nothing may go.
 
         Things that no method can take away alone are tried with others. Sets that hold a pair whose change is above
         the tolerance are left out.
@@ -157,7 +157,7 @@ class LeastSearch:
         return found
 
     def _model(self, chosen: Chosen) -> LesserModel | str | None:
-        """The model without these things; why they cannot go; None where it has one of them not."""
+        """Return the model without these things; why they cannot go; None where it has one of them not."""
         found: LesserModel | None = self.full
         try:
             for thing in chosen:
@@ -174,7 +174,7 @@ def each_reason_once(singles: Sequence[Without]) -> list[Without]:
 
 
 def _most(singles: Sequence[Without]) -> Chosen:
-    """Of those that may go the one of each group that takes most away, in the order of the things."""
+    """Return, of each group of those that may go, the one that takes most away, in the order of the things."""
     return tuple({each.gone[0].group: each.gone[0] for each in singles if each.may_go}.values())
 
 

@@ -1,4 +1,4 @@
-"""The steppers of march: the numbers of each, and its step for a mass, a contact and what the contact remembers.
+"""Steppers of march: the numbers of each, and its step for a mass, a contact and what the contact remembers.
 
 A stepper is a record; kernels choose their step by its type, so that one march serves all of them.
 """
@@ -84,7 +84,7 @@ Stepper = Moreau | Rk4 | Smoothed | Sdirk2
 
 
 class MarchProblem(NamedTuple):
-    """What a stepper sees; memory, ahead: what the law remembers where a step starts, and where it ends."""
+    """Scene and law as a stepper sees them; memory, ahead: of the law where a step starts, and where it ends."""
 
     law: Any
     body: BodyNumbers
@@ -218,7 +218,7 @@ def _rates_with_a_bristle(problem: MarchProblem, acts: Acting, x: Any, v: Any, z
 @as_argument
 @fast
 def _expanded_force(body: BodyNumbers, x: Any, v: Any, ahead: Any, later: Any) -> Any:
-    """The restoring force on another motion, linear about x, v."""
+    """Return the restoring force on another motion, linear about x, v."""
     if len(body.bends.some) == 0:
         return linear_force(body, ahead, later)
     return restoring_force(body, x, v) + linear_force(slopes_at(body, x, v), ahead - x, later - v)

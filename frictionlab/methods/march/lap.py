@@ -22,11 +22,11 @@ from frictionlab.motion.steppers.step import StepEnd, StepStart
 from frictionlab.scene.body import BodyNumbers
 
 NOTHING = np.zeros(1)
-"""Of a memory that is none."""
+"""Memory of a law that has none."""
 
 
 class MarchSettings(NamedTuple):
-    """What a lap is, how long steps are, and when to stop."""
+    """Numbers of a lap, the length of steps, and when to stop."""
 
     belt_speed: float
     driven: bool
@@ -57,7 +57,7 @@ class SlipTrace(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """Of friction since a lap began: its impulse, time at rest, its largest coefficient over one step."""
+    """Sums of friction since a lap began: its impulse, time at rest, its largest coefficient over one step."""
 
     impulse: Any
     stuck: float
@@ -65,7 +65,7 @@ class Tally(NamedTuple):
 
 
 class Swing(NamedTuple):
-    """Of an undriven motion since a mark: its largest speed, and impulse and time at rest at the mark."""
+    """Sums of an undriven motion since a mark: its largest speed, and impulse and time at rest at the mark."""
 
     mark: float  # when it is judged
     most: float
@@ -120,7 +120,7 @@ def slip_trace(trace: SlipTrace, w: Any) -> SlipTrace:
 
 @inner
 def keep_memory(problem: MarchProblem) -> None:
-    """What the law remembers at the end of a step is what it remembers at the start of the next."""
+    """Keep what the law remembers at the end of a step for the start of the next."""
     for k in range(count_of(problem.law)):
         problem.memory[k] = problem.ahead[k]
 
@@ -137,13 +137,13 @@ def tally_step(tally: Tally, taken: StepEnd, h: float) -> Tally:
 
 @embedded
 def rests_in_spring(swing: Swing, x: Any, v: Any, tau: float) -> bool:
-    """Whether it is time to judge the swing, and nothing has moved but by rounding since the mark."""
+    """Check whether it is time to judge the swing, and nothing has moved but by rounding since the mark."""
     return tau >= swing.mark and max(swing.most, length(v)) <= 1e-12 * (length(x) + 1e-3)
 
 
 @embedded
 def next_swing(swing: Swing, tally: Tally, tau: float, speed: float) -> Swing:
-    """The swing after a step that ended with this speed; begun anew every 2 pi."""
+    """Return the swing after a step that ended with this speed; begun anew every 2 pi."""
     if tau >= swing.mark:
         return Swing(tau + 2.0 * math.pi, 0.0, tally.impulse, tally.stuck)
     return Swing(swing.mark, max(swing.most, speed), swing.impulse, swing.stuck)
@@ -181,7 +181,7 @@ def past_corner(body: BodyNumbers, belt_speed: float, lap: Lap) -> SlipTrace:
 
 @inner
 def problem_in_piece(problem: MarchProblem, k: int) -> MarchProblem:
-    """The problem as the k-th piece of a lap has it."""
+    """Return the problem as the k-th piece of a lap has it."""
     return MarchProblem(
         problem.law,
         in_piece(problem.body, k),
@@ -261,7 +261,7 @@ def march_piece(problem: MarchProblem, settings: MarchSettings, lap: Lap, end: f
 
 @inner
 def resting_lap(lap: Lap, swing: Swing) -> Lap:
-    """The lap of a mass that never returns: the last time over which it was at rest in the spring."""
+    """Return the lap of a mass that never returns: the last time over which it was at rest in the spring."""
     since = Tally(lap.tally.impulse - swing.impulse, lap.tally.stuck - swing.stuck, lap.tally.peak)
     duration = lap.duration - swing.mark + 2.0 * math.pi
     return Lap(lap.x, lap.v, since, lap.trace, duration, 0.0, lap.steps, False)

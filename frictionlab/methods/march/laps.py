@@ -63,7 +63,7 @@ class LapsMarched(NamedTuple):
 
 
 class MarchProgress(NamedTuple):
-    """How far a march has come."""
+    """State of a march."""
 
     laps: int
     steps: int
@@ -73,7 +73,7 @@ class MarchProgress(NamedTuple):
 
 
 class MarchHistory(NamedTuple):
-    """What a march came to; trace: of the last lap."""
+    """Result of a march; trace: of the last lap."""
 
     laps: LapsMarched
     trace: SlipTrace
@@ -144,7 +144,7 @@ def keep_state(laps: LapsMarched, n: int, x: Any, v: Any, problem: MarchProblem)
 
 @inner
 def gap_after(laps: LapsMarched, n: int, body: BodyNumbers, settings: MarchSettings) -> float:
-    """How far the state after n laps is from that a stride earlier, in the energy norm."""
+    """Return how far the state after n laps is from that a stride earlier, in the energy norm."""
     before = n - settings.stride
     gap = squared(body, laps.x[n] - laps.x[before], laps.v[n] - laps.v[before])
     for k in range(settings.spring.size):
@@ -167,7 +167,7 @@ def shrinking_rate(gaps: Any, n: int, stride: int) -> float:
 
 @inner
 def distance_left(gaps: Any, n: int, settings: MarchSettings, floor: float) -> float:
-    """What is left to the closed orbit, from the last gap and the rate at which gaps shrink."""
+    """Return what is left to the closed orbit, from the last gap and the rate at which gaps shrink."""
     gap = gaps[n - 1]
     # Rounding alone keeps a gap this small open.
     if gap <= floor:
@@ -181,7 +181,7 @@ def distance_left(gaps: Any, n: int, settings: MarchSettings, floor: float) -> f
 
 @inner
 def has_stalled(body: BodyNumbers, laps: LapsMarched, n: int, settings: MarchSettings) -> bool:
-    """Whether the gaps have stopped to shrink, and lead nowhere: a slow drift towards the orbit is no stall."""
+    """Check whether the gaps have stopped to shrink, and lead nowhere: a slow drift towards the orbit is no stall."""
     half = settings.window * settings.stride
     if n < 2 * half + settings.stride:
         return False
@@ -196,13 +196,13 @@ def has_stalled(body: BodyNumbers, laps: LapsMarched, n: int, settings: MarchSet
 
 @inner
 def sticks_all_along(settings: MarchSettings, lap: Lap) -> bool:
-    """Whether the belt carried the mass for a whole period of the drive."""
+    """Check whether the belt carried the mass for a whole period of the drive."""
     return settings.driven and lap.tally.stuck > 0.999999 * settings.span
 
 
 @inner
 def verdict_on_lap(body: BodyNumbers, settings: MarchSettings, lap: Lap) -> int:
-    """The verdict where the last lap alone decides; LATE where it went well."""
+    """Return the verdict where the last lap alone decides; LATE where it went well."""
     if lap.trace.met > settings.fastest:
         return TOO_FAST
     if not squared(body, lap.x, lap.v) < 1e300 or runs_away(body, lap.x):
@@ -218,7 +218,7 @@ def verdict_on_lap(body: BodyNumbers, settings: MarchSettings, lap: Lap) -> int:
 def progress_after(
     progress: MarchProgress, body: BodyNumbers, settings: MarchSettings, laps: LapsMarched, lap: Lap
 ) -> MarchProgress:
-    """The progress with one more lap, which is written down already."""
+    """Return the progress with one more lap, which is written down already."""
     n, steps, verdict = progress.laps + 1, progress.steps + lap.steps, verdict_on_lap(body, settings, lap)
     if verdict != LATE or n < settings.stride:
         return MarchProgress(n, steps, progress.distance, progress.good, verdict)
@@ -243,7 +243,7 @@ def progress_after(
 
 @inner
 def path_stuck(law: Any, body: BodyNumbers, settings: MarchSettings, lap: Lap) -> float:
-    """How far the belt carries a mass that stuck for a whole lap, by as many laps at once as it surely sticks."""
+    """Carry a mass that stuck for a whole lap with the belt, by as many laps at once as it surely sticks."""
     if settings.stride > 1 or not (lap.returned and sticks_all_along(settings, lap)):
         return 0.0
     carried = belt_advance(body, settings.belt_speed)

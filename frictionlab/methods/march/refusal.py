@@ -34,12 +34,12 @@ class Request:
 
     @property
     def kind(self) -> str:
-        """What the law remembers."""
+        """Return what the law remembers."""
         return self.law.memory_kind
 
     @property
     def facts(self) -> StepperFacts:
-        """Of the stepper."""
+        """Facts of the stepper."""
         return STEPPERS[self.stepper]
 
 

@@ -40,7 +40,7 @@ from frictionlab.scene.scene import Initial, Scene
 from frictionlab.values.quantities import Floats
 
 LONGEST_PERIOD = 8
-"""Of a response that repeats only after several laps."""
+"""Longest period of a response that repeats only after several laps."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class MarchResult:
 
     @property
     def settled(self) -> bool:
-        """Whether there is a mean to speak of."""
+        """Check whether there is a mean to speak of."""
         return self.verdict in (CLOSED, STALLED, RESTING)
 
 
@@ -128,7 +128,7 @@ class MarchRun:
         return Orbit(tau, track.x[:n], track.v[:n], track.friction[:n], track.stick[:n])
 
     def fastest(self, pace: Resolution) -> float:
-        """The slip speed that steps of this pace can bear."""
+        """Return the slip speed that steps of this pace can bear."""
         if not self.facts.limited_by_rates:
             return 1e300
         return fastest_slip(
@@ -229,7 +229,7 @@ def _stride(march: MarchHistory) -> int:
 
 
 def _offsets(tau: Floats) -> Floats:
-    """What to add to each panel's time so that laps, each from zero, follow each other."""
+    """Return what to add to each panel's time so that laps, each from zero, follow each other."""
     offsets = np.zeros(len(tau))
     for i in np.flatnonzero(tau[1:, 0] < tau[:-1, 0]):
         offsets[i + 1 :] += tau[i, -1]

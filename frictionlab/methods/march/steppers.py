@@ -27,7 +27,7 @@ SMOOTHINGS = {"tanh": TANH, "arctan": ARCTAN}
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely to step, and how well to close: numbers of one run."""
+    """Fineness of steps and of closing: numbers of one run."""
 
     steps: int = 1  # per period of the drive, or per 2 pi; of fixed steps
     theta: float = 0.5
@@ -42,7 +42,7 @@ class Resolution:
 
 
 class StepperFacts(NamedTuple):
-    """What is known of a stepper.
+    """Facts of a stepper.
 
     kinds: of memory that it steps. keys: of a study, beside ``periods``.
     record: its numbers in a run. held: largest stable step times frequency of a mass held by its contact. decay:
@@ -63,7 +63,7 @@ class StepperFacts(NamedTuple):
 
     @property
     def limited_by_rates(self) -> bool:
-        """Whether the decay of the memory limits steps, too."""
+        """Check whether the decay of the memory limits steps, too."""
         return math.isfinite(self.decay)
 
 
@@ -91,7 +91,7 @@ STEPPERS: dict[StepperName, StepperFacts] = {
     ),
     "sdirk2": StepperFacts(("bristle",), ("steps",), lambda _: Sdirk2(), bears_jumps=False),
 }
-"""Of each kind of memory, the first that steps it is taken where none is named."""
+"""Steppers; the first that steps a kind of memory is taken where none is named."""
 
 
 def steppers_of(kind: str) -> list[StepperName]:
@@ -111,7 +111,7 @@ SLOW = np.geomspace(1e-30, 1.0, 241)
 
 
 def shares_of_load(scene: Scene) -> tuple[float, float]:
-    """The least and the largest normal load, over its mean."""
+    """Return the least and the largest normal load, over its mean."""
     if scene.normal_load_variation is None:
         return 1.0, 1.0
     signals = scene.signals()
@@ -121,7 +121,7 @@ def shares_of_load(scene: Scene) -> tuple[float, float]:
 
 
 def lightest_contact(scene: Scene) -> float:
-    """The least share of the mean load under which bristles are bent as the law says it; 1 where they follow it."""
+    """Least share of the mean load under which bristles are bent as the law says it; 1 where they follow it."""
     return shares_of_load(scene)[0] if scene.constant_contact else 1.0
 
 
@@ -129,7 +129,7 @@ def lightest_contact(scene: Scene) -> float:
 
 
 def expected_slip(scene: Scene) -> float:
-    """The largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
+    """Return the largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
     along = velocity_scale(scene) + abs(scene.belt_speed)
     mass, start = scene.mass(), scene.start if scene.undriven else scene.initial
     dynamic = complex(mass.transverse_stiffness - mass.frequency**2, mass.transverse_damping * mass.frequency)
@@ -151,12 +151,12 @@ def usual_slip(scene: Scene) -> float:
 
 
 def steady_memory(law: Any, speed: float) -> Floats:
-    """What a law of several numbers remembers in steady sliding."""
+    """Return what a law of several numbers remembers in steady sliding."""
     return np.array([law.steady(speed, k) for k in range(count_of(law))])
 
 
 def first_memory(scene: Scene, law: FrictionLaw) -> Floats:
-    """The memory at the start: no deflection; scalars as in steady sliding at the speed of the motion."""
+    """Return the memory at the start: no deflection; scalars as in steady sliding at the speed of the motion."""
     if law.memory_kind == "scalars":
         return steady_memory(law, usual_slip(scene))
     return np.zeros(max(1, count_of(law)))
@@ -189,7 +189,7 @@ def contact_damping(scene: Scene, law: FrictionLaw) -> float:
 
 
 def memory_stiffness(scene: Scene, law: FrictionLaw) -> Floats:
-    """The stiffness of each memory in the energy norm; of a scalar, from its effect on friction."""
+    """Return the stiffness of each memory in the energy norm; of a scalar, from its effect on friction."""
     if law.memory_kind in ("none", "bristle"):
         return np.array([scene.mass().normal_load * elastic_stiffness(law)])
     speed, load = usual_slip(scene), scene.mass().normal_load
@@ -215,7 +215,7 @@ def stable_decay(law: FrictionLaw, facts: StepperFacts) -> float:
 
 
 def fastest_slip(law: FrictionLaw, facts: StepperFacts, h: float) -> float:
-    """The slip speed at which the memory decays at the largest rate for which steps of length h are stable."""
+    """Return the slip speed at which the memory decays at the largest rate for which steps of length h are stable."""
     low, high, decay = 0.0, 1e12, stable_decay(law, facts)
     if law.memory_kind == "none":
         return 1e300
@@ -250,7 +250,7 @@ def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
 
 
 def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
-    """The largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
+    """Return the largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
     mass = scene.mass()
     heaviest = mass.normal_load * shares_of_load(scene)[1]
     stiffness = max(mass.stiffness, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)

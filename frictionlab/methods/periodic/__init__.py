@@ -1,1 +1,1 @@
-"""The period (Poincare) map of every law, its fixed points, and their continuation in belt speed."""
+"""Period (Poincare) map of every law, its fixed points, and their continuation in belt speed."""

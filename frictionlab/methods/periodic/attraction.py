@@ -1,4 +1,4 @@
-"""Whether motions from far starts end on an orbit: transients followed period by period."""
+"""Test of motions from far starts, which may end on an orbit: transients followed period by period."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ MOST_PERIODS = 5000
 PATIENCE = 300
 """Periods within which a motion must come near to an orbit."""
 AGREED, ENOUGH = 0.1, 3
-"""How far a period may be from what the monodromy says of it, and how many such periods in a row are enough."""
+"""Distance of a period from what the monodromy says of it, and how many such periods in a row are enough."""
 
 
 class Follow(NamedTuple):
-    """How a motion is followed: the accuracy of its maps, and whether friction is the same at every speed of slip.
+    """Way to follow a motion: the accuracy of its maps, and whether friction is the same at every speed of slip.
 
     whole: all of its periods, each by itself, whether they repeat or not.
     """
@@ -48,7 +48,7 @@ class Follow(NamedTuple):
 
 
 class Trail(NamedTuple):
-    """Of a motion the mean friction of each period [n], the states before the first and after each [n + 1, size]."""
+    """Mean friction of each period of a motion [n], the states before the first and after each [n + 1, size]."""
 
     means: Any
     states: Any
@@ -67,7 +67,7 @@ class KnownOrbit(NamedTuple):
 
 @inner
 def obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
-    """Whether a period from ``before`` (as what follows, a distance from the orbit) is as the monodromy says.
+    """Check whether a period from ``before`` (as what follows, a distance from the orbit) is as the monodromy says.
 
     That the distance falls by the largest multiplier is not enough: other attractors do so for some periods. The
     distance itself must be what is predicted, to a tenth of the change in the period, which another orbit would leave
@@ -151,7 +151,7 @@ def settle(maps: Maps, periods: float, x: complex, v: complex, accuracy: float) 
 
 
 LONGEST_PERIOD = 8
-"""Of a subharmonic response that is looked for [drive periods]."""
+"""Longest period of a subharmonic response that is looked for [drive periods]."""
 
 
 @inner
@@ -189,7 +189,7 @@ def corners(maps: Any, law: Any, size: int, place: tuple[complex, complex], spee
 
 
 ARRIVED, VERY_NEAR, FALLEN = -1, 1e-5, 0.1
-"""What stands for a number of periods where a motion ends on a known orbit; how near to it is near enough, over its
+"""Sign in place of a number of periods where a motion ends on a known orbit; how near is near enough, over its
 size; and to what share the distance must have fallen while it obeyed. Three periods alone are no sign: the motion
 turns about the orbit, and may meet stick, and leave, where it has not been yet."""
 
@@ -205,7 +205,7 @@ MANY = 8.0
 
 @inner
 def _periods_alike(setting: Setting, state: Any, image: SpanImage) -> float:
-    """How many periods from this one on the belt is sure to carry a mass that rests on it all the time, or 1.
+    """Return how many periods from this one on the belt is sure to carry a mass that rests on it all the time, or 1.
 
     From where it starts to the mean of its orbit a slow belt carries it for thousands of them.
     """

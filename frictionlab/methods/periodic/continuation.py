@@ -38,7 +38,7 @@ MEAN, ACROSS, ERROR, MAPS, STUCK, CLOSEST, COLUMNS = range(7)
 
 
 class ClosedOrbits(NamedTuple):
-    """Of each orbit [n] its mean friction, along the belt and across, the error of that, the maps it took, the share
+    """Results of each orbit [n]: mean friction along the belt and across, its error, the maps it took, the share
     of the period at rest and the slowest slip.
 
     maps: 0 in closed form; negative where no orbit was found in so many. NaN all where none was looked for.
@@ -58,7 +58,7 @@ class ClosedOrbits(NamedTuple):
 
     @property
     def found(self) -> NDArray[np.bool_]:
-        """Whether each is known."""
+        """Check whether each is known."""
         return np.asarray(self.maps >= 0.0)
 
 
@@ -75,7 +75,7 @@ MOST_KNOWN = 6
 
 @inner
 def _extrapolated(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> None:
-    """The polynomial through the known states before i, at i."""
+    """Extrapolate the polynomial through the known states before i to i."""
     for row in range(z.size):
         z[row] = 0.0
     for a in range(i - known, i):
@@ -90,7 +90,7 @@ def _extrapolated(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> 
 
 @inner
 def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) -> int:
-    """How many states before i would have predicted state i best: kinks of a curve want few, smooth parts many."""
+    """Return how many states before i predict state i best: few at kinks of a curve, many on smooth parts."""
     best, least = 1, 1e300
     for count in range(1, known + 1):
         _extrapolated(states, belt_speeds, i, count, work)
@@ -142,7 +142,7 @@ def solve_curve(maps: Maps, periods: float, belt_speeds: Any, guess: Any, goal: 
 
 @inner
 def _slides_on(setting: Setting, guess: Any, state: Any) -> bool:
-    """Whether the orbit looked for is that of slip that never reverses, written then to the state: closed form.
+    """Check whether the orbit looked for is that of slip that never reverses, written then to the state: closed form.
 
     It is where no guess says otherwise.
     """
@@ -157,7 +157,7 @@ def _slides_on(setting: Setting, guess: Any, state: Any) -> bool:
 
 @inner
 def _sliding(setting: Setting, state: Any) -> FixedPoint:
-    """The constant friction of slip that never reverses, from its state; it takes no map."""
+    """Return the constant friction of slip that never reverses, from its state; it takes no map."""
     friction = write_sliding_state(setting, state)
     impulse = complex(-friction * scales_of(setting).period, 0.0)
     slowest = max(0.0, abs(setting.belt_speed) - setting.maps.fastest)
@@ -173,7 +173,7 @@ def _write_results(setting: Setting, closed: FixedPoint, row: Any) -> None:
 
 @inner
 def record_orbit(setting: Setting, z: Any, accuracy: float, track: Track) -> Track:
-    """The track with the closed orbit from z, piece by piece, after what it holds; on a larger one where needed."""
+    """Track with the closed orbit from z, piece by piece, after what it holds; on a larger one where needed."""
     first, residual = track.filled[0], np.empty(z.size)
     recorded_map(setting, z, residual, accuracy, track)
     # How many pieces an orbit has is known once it is written: a full track may lack some.
@@ -186,12 +186,12 @@ def record_orbit(setting: Setting, z: Any, accuracy: float, track: Track) -> Tra
 
 @inner
 def recorded_accuracy(normal_load: float, goal: Goal) -> float:
-    """The recorded motion is a map of its own, as exact as the mean was asked to be."""
+    """Return the recorded motion is a map of its own, as exact as the mean was asked to be."""
     return max(0.1 * goal.tolerance * normal_load, 1e-13 * min(1.0, normal_load))
 
 
 class Wanted(NamedTuple):
-    """What of a curve: its orbits closed from a guess, or those of given states; recorded, and their monodromies.
+    """Kernels of a curve: its orbits closed from a guess, or of given states; recorded, and their monodromies.
 
     mapped: nothing else but the given states one period later, by fine maps.
 
@@ -225,7 +225,7 @@ class Curve(NamedTuple):
 
     @property
     def closed(self) -> ClosedOrbits:
-        """What is known of each orbit."""
+        """Return what is known of each orbit."""
         return ClosedOrbits.of(self.results)
 
 

@@ -1,4 +1,4 @@
-"""Where the search for an orbit begins: the mean friction of a harmonic slip, and friction as a dashpot."""
+"""Start of the search for an orbit: the mean friction of a harmonic slip, and friction as a dashpot."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from frictionlab.scene.body import BodyNumbers
 
 @inner
 def first_guess(law: Any, body: BodyNumbers, belt_speed: float, z: Any) -> float:
-    """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
+    """Spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
     swing = body.frequency * math.hypot(abs(free_sine(body)), abs(free_cosine(body))) + belt_swing(body)
     # As if slip were the belt speed and one harmonic of the free motion: the closed form of prescribed slip.
     ratio = abs(belt_speed) / (swing + 1e-300)

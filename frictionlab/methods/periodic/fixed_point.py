@@ -1,4 +1,4 @@
-"""The fixed point of a period map, and a bound on the error of the mean friction of its orbit.
+"""Fixed point of a period map, and a bound on the error of the mean friction of its orbit.
 
 One search serves every law: quasi-Newton steps with maps a little more accurate than the next residual; where the
 residual stops falling, a Newton step by difference quotients, then plain repetition of the map. Two estimators end
@@ -37,24 +37,24 @@ UTMOST_WORK = 10_000_000
 LITTLE_WORK = 100_000
 """Steps after which one that exists in the plane is left to the maps of implicit steps (near_rest.py)."""
 FINER = 16.0
-"""How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
+"""Ratio of accuracies of the last map; of order eight, its own error is then a small part of what it measures."""
 ROUNDING = 2e-14
-"""What the sums of a period's friction lose to rounding, in the mean coefficient."""
+"""Rounding error of the sums of a period's friction, in the mean coefficient."""
 SURE = 0.05
-"""Of the bound on the mean that a distance of states gives where no two orbits move apart: it is some hundred times
+"""Share of the bound on the mean that a distance of states gives where no two orbits move apart: some hundred times
 what the mean really moves, and a part of it stands in where two means agree by chance."""
 LOOSE = 2.0
-"""How much coarser than the tolerance the maps of a law with memory are; the two that end the search are finer."""
+"""Accuracy of the maps of a law with memory, over the tolerance; the two that end the search are finer."""
 PATIENCE = 3
-"""How often quasi-Newton steps stall before the maps of a law with memory are made finer."""
+"""Stalls of quasi-Newton steps before the maps of a law with memory are made finer."""
 ALMOST_SINGULAR = 1e6
 """Size of an inverse of (monodromy - identity) that belongs to a line of orbits, not to one."""
 MOST_CHECKS = 12
-"""How often the last maps of a law with memory may disagree before the search gives up."""
+"""Disagreements of the last maps of a law with memory before the search gives up."""
 
 
 class Goal(NamedTuple):
-    """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart.
+    """Purpose for which an orbit is closed: the tolerance on the mean, and whether no two motions ever move apart.
 
     check_attraction: whether the two cheap starts are followed to see that they converge to the orbit. constant:
     whether friction is the same at every speed of slip that never reverses, so that this is an orbit in closed form.
@@ -80,7 +80,7 @@ class FixedPoint(NamedTuple):
 
 
 class Iterate(NamedTuple):
-    """The state, the inverse of (monodromy - identity), the residual, and room for vectors, all [n].
+    """State, the inverse of (monodromy - identity), the residual, and room for vectors, all [n].
 
     monodromy: that of the orbit found, where the end of the search computes it.
     """
@@ -96,7 +96,7 @@ class Iterate(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """How far a search is: its last map, the accuracy of that map and of the finest asked for, and what it took."""
+    """State of a search: its last map, the accuracy of that map and of the finest asked for, and what it took."""
 
     image: SpanImage
     accuracy: float
@@ -110,7 +110,7 @@ class Progress(NamedTuple):
 
 @inner
 def stated_error(changed: float, left_open: float, steps: float) -> float:
-    """The error stated of a mean friction, whoever has found the orbit.
+    """Return the error stated of a mean friction, whoever has found the orbit.
 
     changed: by how much a finer map moved the mean. left_open: what the orbit does not close by, carried to the mean
     by the distance of states, by the mean's own change or by its adjoint. steps: what steps and rounding of the last
@@ -250,7 +250,7 @@ def quasi_newton_step(setting: Setting, search: Iterate, now: Progress) -> Progr
 
 @inner
 def _recovered(setting: Setting, search: Iterate, now: Progress, length: float, floor: float) -> Progress:
-    """Where quasi-Newton steps have stalled: finer maps if what is left is their own error, else a Newton step."""
+    """Go on where quasi-Newton steps have stalled: by finer maps if their own error is left, else a Newton step."""
     remembers, finest, newtons = setting.maps.remembers, now.finest, now.newtons
     if not remembers and now.accuracy <= finest and length <= 30.0 * now.accuracy and finest > floor:
         finest = max(floor, finest / FINER)
@@ -388,13 +388,13 @@ def _check_with_memory(
 
 @inner
 def first_accuracy_without_memory(asked: float) -> float:
-    """Of maps, for an error of the force of friction that is asked for."""
+    """Return the accuracy of maps for an error of the force of friction that is asked for."""
     return 0.5 * asked
 
 
 @inner
 def _first_accuracy(setting: Setting, tolerance: float) -> Any:
-    """The accuracy of the maps that find an orbit, and how near [tolerances] it must be for its error to be asked."""
+    """Accuracy of the maps that find an orbit, and how near [tolerances] it must be for its error to be asked."""
     asked = tolerance * setting.maps.per_drive.normal_load
     if setting.maps.remembers:
         return min(LOOSE * asked, setting.maps.coarsest), 3.0
@@ -406,7 +406,7 @@ def _first_accuracy(setting: Setting, tolerance: float) -> Any:
 
 @inner
 def _carried_by_the_belt(setting: Setting, search: Iterate, now: Progress) -> Progress:
-    """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
+    """Return the mass rests on the belt all the time: go on by as many periods at once as it surely does."""
     many = spans_at_rest(setting, search.z)
     for i in range(search.z.size):
         search.z[i] = search.z[i] + many * search.residual[i]

@@ -1,4 +1,4 @@
-"""The orbits of a curve in the plane, closed eight belt speeds at a time.
+"""Orbits of a curve in the plane, closed eight belt speeds at a time.
 
 The first lanes lie evenly along the curve and start from a harmonic motion. Then come the middles of all gaps, with
 guesses interpolated from both sides, again and again: most of them need one map, which tells their error, too. What
@@ -31,11 +31,11 @@ from frictionlab.scene.body import BodyNumbers
 
 MOST_LANE_MAPS = 12
 FINER_IN_LANES = 4.0
-"""How much finer the last map is than the first that is looked for: its whole accuracy is in the error stated."""
+"""Ratio of accuracies of the first map and the last, whose whole accuracy is in the error stated."""
 BESIDE = 3
 """Known states on either side that a guess is interpolated from."""
 MAP_NOISE = 0.3
-"""Of a map's accuracy: a residual below that says nothing of the state."""
+"""Share of a map's accuracy below which a residual says nothing of the state."""
 NOT_YET, LEFT, CLOSED_ORBIT = 0, 1, 2
 
 
@@ -52,12 +52,12 @@ class LaneCurve(NamedTuple):
 
     @property
     def closed(self) -> ClosedOrbits:
-        """What is known of each orbit."""
+        """Return what is known of each orbit."""
         return ClosedOrbits.of(self.results)
 
 
 class GroupProgress(NamedTuple):
-    """How many maps a group went through, the last one's accuracy, that before, and the coarsest for an error."""
+    """Count of maps of a group, the last one's accuracy, that before, and the coarsest for an error."""
 
     maps: int
     accuracy: float
@@ -66,7 +66,7 @@ class GroupProgress(NamedTuple):
 
 
 class Group(NamedTuple):
-    """The points that go through maps together [count], their rows, and vectors of each lane [lanes, 4].
+    """Points that go through maps together [count], their rows, and vectors of each lane [lanes, 4].
 
     step: the next quasi-Newton step. before: the residual that it comes from. active: what still goes on [lanes].
     """
@@ -116,7 +116,7 @@ def _beside(fate: Any, i: int, places: Any) -> int:
 
 @inner
 def _interpolate(curve: LaneCurve, places: Any, count: int, i: int, z: Any) -> None:
-    """The polynomial through the states at the first places, at i."""
+    """Extrapolate the polynomial through the states at the first places to i."""
     belt_speeds = curve.belt_speeds
     for row in range(z.size):
         z[row] = 0.0
@@ -205,7 +205,7 @@ def _write_rows(curve: LaneCurve, group: Group, count: int) -> bool:
 
 @inner
 def _expected(curve: LaneCurve, i: int) -> float:
-    """The residual of a guess at i, from those of the points beside it, whose guesses came from twice as far."""
+    """Residual of a guess at i, from those of the points beside it, whose guesses came from twice as far."""
     least = 1e300
     for side in (-1, 1):
         j = i + side

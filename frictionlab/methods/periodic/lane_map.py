@@ -1,4 +1,4 @@
-"""The period map of planar slip for several belt speeds at once, each in a lane with steps of its own.
+"""Period map of planar slip for several belt speeds at once, each in a lane with steps of its own.
 
 The text of every step is that of maps/sliding.py. A lane that comes next to rest, or takes too many steps, is left
 where it is: the map of one belt speed, which knows rest, is for it.
@@ -25,7 +25,7 @@ MOST_STEPS_IN_LANES = 3_000
 
 
 class LaneRows(NamedTuple):
-    """What goes into a map and comes out of it, a lane a column.
+    """Input and output of a map, a lane a column.
 
     belt_speed [lanes], state [4, lanes]; residual [4, lanes]: image - state; impulse [2, lanes]: integral of the
     friction coefficient, along x1 and across; closest [lanes]: smallest slip speed at a node; arrived [lanes]: 1
@@ -55,7 +55,7 @@ def rows_for(lanes: int) -> LaneRows:
 
 @inner
 def _merged(mask: Any, new: Node, old: Node) -> Node:
-    """The new node where the mask is true."""
+    """Return the new node where the mask is true."""
     a, b = new.state, old.state
     state = State(
         select(mask, a.x, b.x),
@@ -73,7 +73,7 @@ def _merged(mask: Any, new: Node, old: Node) -> Node:
 
 
 class LaneWay(NamedTuple):
-    """How far the lanes are: the law and the body at the anchors, nodes, next steps, friction and slowest slip."""
+    """State of the lanes: the law and the body at the anchors, nodes, next steps, friction and slowest slip."""
 
     problem: Flow
     node: Node
@@ -83,7 +83,7 @@ class LaneWay(NamedTuple):
 
 
 class LaneLimits(NamedTuple):
-    """Where a map ends, its accuracy, the force of friction at rest, the slip next to rest, the longest step.
+    """End of a map, its accuracy, the force of friction at rest, the slip next to rest, the longest step.
 
     alike: whether eight lanes beside each other take the same steps, those of the most demanding: what comes out is
     then a smooth function of what goes in.

@@ -1,4 +1,4 @@
-"""The orbits of a curve recorded eight at a time: every step of every lane is a panel of its orbit.
+"""Orbits of a curve recorded eight at a time: every step of every lane is a panel of its orbit.
 
 All lanes step at once and write into one array of steps; the panels of each are gathered from it afterwards.
 
@@ -40,7 +40,7 @@ MOST_RECORDED = 600
 MOST_AT_ONCE = 128
 """Lanes of a record, where Python runs it: a step of each takes 6 kB."""
 TAU, X, X2, V, V2, FRICTION, FRICTION2, NUMBERS = range(8)
-"""Of a node: time, and position, velocity and friction, each along x1 and across."""
+"""Numbers of a node: time, and position, velocity and friction, each along x1 and across."""
 
 
 @inner
@@ -103,7 +103,7 @@ run_as(_write_panel, _write_panel_in_python)
 
 @inner
 def record_in_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, states: Any, accuracy: float) -> Any:
-    """The track of these orbits, one after another, and the panels before which each ends [n].
+    """Return the track of these orbits, one after another, and the panels before which each ends [n].
 
     Of an orbit that lanes leave there are no panels.
     """
@@ -134,7 +134,7 @@ def record_in_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, states: Any, 
 
 LANES_OF_AN_ORBIT = 8
 SHIFT = 1e-6
-"""Of the size of a state."""
+"""Change of a state for difference quotients, over its size."""
 COARSE = 1e-9
 """Accuracy of the steps, of the size of a state: multipliers are wrong by some hundred times that where slip grazes
 rest, else by a tenth of it."""
@@ -151,7 +151,7 @@ def _write_shifted(rows: LaneRows, belt_speed: float, z: Any, shift: float, firs
 
 @inner
 def _write_monodromy(rows: LaneRows, shift: float, first: int, matrix: Any) -> None:
-    """The matrix, NaN where a lane was left."""
+    """Write the matrix, NaN where a lane was left."""
     for k in range(LANES_OF_AN_ORBIT):
         shift = shift if rows.arrived[first + k] > 0.0 else np.nan
     for column in range(4):
@@ -162,7 +162,7 @@ def _write_monodromy(rows: LaneRows, shift: float, first: int, matrix: Any) -> N
 
 @inner
 def differentiate_in_lanes(law: Any, body: BodyNumbers, belt_speeds: Any, states: Any) -> Any:
-    """The monodromies of these orbits [n, 4, 4]; NaN where they come next to rest."""
+    """Return the monodromies of these orbits [n, 4, 4]; NaN where they come next to rest."""
     n = belt_speeds.size
     matrices, lanes = np.empty((n, 4, 4)), room_for(LANES_OF_AN_ORBIT * n)
     rows, orbits = rows_for(lanes), lanes // LANES_OF_AN_ORBIT

@@ -1,4 +1,4 @@
-"""The derivative of the period map by difference quotients."""
+"""Derivative of the period map by difference quotients."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from frictionlab.motion.linalg import invert
 from frictionlab.motion.maps.case import MOST_KEPT, Pace, pace_of
 
 OF_LOGARITHM = 1e-3
-"""The largest shift of the logarithm of a scalar."""
+"""Largest shift of the logarithm of a scalar."""
 
 
 @inner
@@ -108,7 +108,7 @@ def _over_the_same_steps(setting: Setting, z: Any, accuracy: float, matrix: Any,
 
 @inner
 def monodromy(setting: Setting, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
-    """The derivatives of the period map [n, n] and of the mean friction [n] by difference quotients."""
+    """Write the derivatives of the period map [n, n] and of the mean friction [n] by difference quotients."""
     if setting.maps.remembers:
         _over_the_same_steps(setting, z, accuracy, matrix, gradient)
     else:
@@ -117,7 +117,7 @@ def monodromy(setting: Setting, z: Any, accuracy: float, matrix: Any, gradient: 
 
 @inner
 def monodromy_of(setting: Setting, z: Any, base: PacedMap, matrix: Any, gradient: Any) -> int:
-    """The same for a law with memory and a state whose map is known; the maps it took."""
+    """Return the same for a law with memory and a state whose map is known; the maps it took."""
     n, enough = z.size, _accuracy_over_steps(setting, z)
     # one map less, where steps are not many more than they need be
     suits = 0.1 * enough <= base.accuracy <= enough

@@ -70,7 +70,7 @@ class Search(NamedTuple):
 
 
 class SearchState(NamedTuple):
-    """Where a search is: the time at which its maps begin, their accuracy, the last image, and what it took."""
+    """State of a search: the time at which its maps begin, their accuracy, the last image, and what it took."""
 
     origin: float
     accuracy: float
@@ -94,7 +94,7 @@ def _map(case: Case, search: Search, z: Any, residual: Any, origin: float, accur
 
 @inner
 def _monodromy(case: Case, image: Image, room: Workspace, matrix: Any) -> None:
-    """The derivative of the last map in the norm of energy."""
+    """Update the derivative of the last map in the norm of energy."""
     # slip is known by size and angle: d(r exp(i theta)) = exp(i theta) (dr + i r dtheta)
     r, body, tangent = abs(image.w), case.body, room.tangent
     turned = image.w / r if r > 0.0 else 0j
@@ -137,7 +137,7 @@ def _invert(search: Search, shift: float) -> bool:
 
 @inner
 def _adjoint(search: Search) -> None:
-    """What a residual changes in the mean."""
+    """Change of the mean by a residual."""
     for column in range(DIRECTIONS):
         total = 0.0
         for row in range(DIRECTIONS):
@@ -178,7 +178,7 @@ def _repeat(case: Case, search: Search, now: SearchState, periods: float) -> Sea
 
 @inner
 def _remap(case: Case, search: Search, now: SearchState) -> SearchState:
-    """The map of the same state anew: at another accuracy or origin."""
+    """Return the map of the same state anew: at another accuracy or origin."""
     image = _map(case, search, search.z, search.fresh, now.origin, now.accuracy)
     return _accept(search, search.z, now, image, case)
 
@@ -204,7 +204,7 @@ def _begin(case: Case, search: Search, from_plateau: bool) -> SearchState:
 
 @inner
 def _as_slip(case: Case, z: Any) -> None:
-    """The state of a deviation at tau = 0 as position and slip."""
+    """Write the state of a deviation at tau = 0 as position and slip."""
     body = case.body
     z[0] += root_along(body) * body.reference_cosine.real
     z[2] += root_across(body) * body.reference_cosine.imag
@@ -274,7 +274,7 @@ def _unstall(case: Case, search: Search, now: SearchState) -> SearchState:
 
 @inner
 def _judge(case: Case, search: Search, now: SearchState, goal: Goal) -> SearchState:
-    """The error of the mean by the same state mapped with much finer steps; the end where it is small enough."""
+    """Error of the mean by the same state mapped with much finer steps; the end where it is small enough."""
     # to first order the mean of the closed orbit: that of this one and what its residual changes in it
     coarse = search.sums[0] + _dot(search.adjoint, search.residual)
     before, accuracy = search.residual.copy(), now.accuracy / MUCH_FINER
@@ -345,7 +345,7 @@ def _search_room() -> Search:
 
 @inner
 def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None:
-    """The orbit of one scene: its state at tau = 0, and what ``solve_curve`` has of it."""
+    """Record the orbit of one scene: its state at tau = 0, and what ``solve_curve`` has of it."""
     body, period = case.body, span(case.body)
     now = _search(case, search, goal, _begin(case, search, True))
     if now.error < 0.0:
@@ -363,7 +363,7 @@ def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None
 
 @inner
 def _recorded(case: Case, search: Search, state: Any, track: Track) -> Track:
-    """The track with the orbit from a state at tau = 0; the room has its derivative."""
+    """Return the track with the orbit from a state at tau = 0; the room has its derivative."""
     body = case.body
     y, u = unpack(body, state, case.zero)
     w = u + reference_velocity(body, 0.0, 1.0) - case.belt_speed

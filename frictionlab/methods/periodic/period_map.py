@@ -37,7 +37,7 @@ from frictionlab.scene.body import BodyNumbers
 
 
 class MapKind(NamedTuple):
-    """What is known of a kind of map.
+    """Facts of a kind of map.
 
     said: of how it is computed, in ``model``. rough: accuracy of the maps that follow a transient: with memory they
     are of lower order. finest: tolerance on the mean of maps that are differentiated; noise: what steps chosen
@@ -201,7 +201,7 @@ def _rest_with_a_bristle(law: Any, body: BodyNumbers, belt_speed: float, y: Any)
 
 
 rest_of = by_law(periods_at_rest, _rest_with_a_bristle, _rest_with_a_bristle)
-"""How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
+"""Count of whole periods, at least one, for which a mass at rest at tau = 0 is sure to be carried on without slip."""
 
 
 def _remember_a_deflection(law: Any, body: BodyNumbers, state: Any, z: Any) -> None:
@@ -212,7 +212,7 @@ def _remember_a_deflection(law: Any, body: BodyNumbers, state: Any, z: Any) -> N
 
 
 def _remember_sliding(law: Any, body: BodyNumbers, state: Any, z: Any) -> None:
-    """The memory of steady sliding at slip velocity z."""
+    """Write the memory of steady sliding at slip velocity z."""
     work = workspace(law, z, body.varying.keeps_stiffness)
     measure_scales(law, body, work, z)
     remember_sliding(law, body, work, z)
@@ -229,7 +229,7 @@ remember = by_law(
 
 @inner
 def start_of(law: Any, body: BodyNumbers, state: Any, x: Any, v: Any, z: Any) -> None:
-    """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z.
+    """Write the state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z.
 
     With another memory, z is the velocity of steady sliding that it remembers.
     """

@@ -1,4 +1,4 @@
-"""Where a slow belt carries a mass: to the edge of the positions in which friction holds it all the time.
+"""Carrying of a mass by a slow belt: to the edge of the positions in which friction holds it all the time.
 
 The positions whose holding force never exceeds friction are convex. A slow belt carries the mass to their far end,
 where the mean of the spring tends to as the belt slows down, and loses it there once a period.
@@ -26,7 +26,7 @@ class Plateau(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """The largest force along the belt that friction holds all the time, beside one across; when it barely does."""
+    """Largest force along the belt that friction holds all the time, beside one across; when it barely does."""
 
     along: float
     tau: float
@@ -48,7 +48,7 @@ def _edge(case: Case, across: float, limit: float) -> Edge:
 
 @inner
 def _farthest(case: Case, room: float, limit: float) -> complex:
-    """The force across the belt, up to this room, beside which the most is held along (golden section), and that."""
+    """Force across the belt, up to this room, beside which the most is held along (golden section), and that."""
     low, high = -room, room
     first, second = high - GOLDEN_SHARE * (high - low), low + GOLDEN_SHARE * (high - low)
     at_first, at_second = _edge(case, first, limit).along, _edge(case, second, limit).along
@@ -66,7 +66,7 @@ def _farthest(case: Case, room: float, limit: float) -> complex:
 
 @inner
 def plateau(case: Case) -> Plateau:
-    """The far end, and beyond it what slip needs to fall behind by the belt's way in a period.
+    """Return the far end, and beyond it what slip needs to fall behind by the belt's way in a period.
 
     There the holding force exceeds friction for a moment, and the mass slips by excess * time^2 in about as long as
     the excess lasts: inertial slip, q/9 of the fourth power of half that time.

@@ -61,7 +61,7 @@ from frictionlab.values.quantities import Floats
 
 
 def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether the motion is on a line: nothing pushes across the belt, and what moves across it dies out.
+    """Check whether the motion is on a line: nothing pushes across the belt, and what moves across it dies out.
 
     A law damps motion across the slip up to some speed: here the largest that the loads could drive.
     """
@@ -148,7 +148,7 @@ FINEST = 1e-15
 
 
 class PeriodicProblem:
-    """The kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
+    """Kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
 
     tolerance: on the mean friction.
     """
@@ -194,7 +194,7 @@ class PeriodicProblem:
 
     @property
     def by_implicit_steps(self) -> Self | None:
-        """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
+        """Same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
         if not (isinstance(self.zero, complex) and self.goal.contracts) or self.mass.varying:
             return None
         other = copy.copy(self)
@@ -203,7 +203,7 @@ class PeriodicProblem:
 
     @property
     def swing(self) -> float:
-        """The speed of the friction-free response."""
+        """Return the speed of the friction-free response."""
         return float(interpreted(swing_of)(self.body))
 
     def close(
@@ -213,7 +213,7 @@ class PeriodicProblem:
         periods: float = 1.0,
         wanted: Wanted = DIFFERENTIATED,
     ) -> tuple[Curve, float]:
-        """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s].
+        """Return the orbits of these scenes, from a known state at the first where there is one; and kernel time [s].
 
         periods: of everything that changes in time, in one orbit.
         """
@@ -225,7 +225,7 @@ class PeriodicProblem:
         return self.called(belt_speeds_of(scenes), guess, goal, wanted, periods)
 
     def in_lanes(self, points: int) -> bool:
-        """Whether eight are answered at once: motions in the plane that converge, without memory, under loads of one
+        """Check whether eight are solved at once: converging motions in the plane, without memory, under loads of one
         sine, of a curve that has more than a few points."""
         planar = isinstance(self.zero, complex) and self.kernel is answer_curve and not self.mass.varying
         return points >= FEWEST_IN_LANES and planar and self.goal.contracts and takes_lanes(self.law)
@@ -236,7 +236,7 @@ class PeriodicProblem:
         return self.body._replace(varying=())
 
     def _close_in_lanes(self, speeds: Floats, periods: float) -> tuple[Curve, float]:
-        """The orbits at these belt speeds; those that lanes leave by the search for one."""
+        """Return the orbits at these belt speeds; those that lanes leave by the search for one."""
         body = self.body_in_lanes._replace(periods=float(periods))
         found, seconds = KernelCall(answer_lanes, self.law).timed(body, speeds, self.goal)
         left = np.flatnonzero(found.fate != CLOSED_ORBIT).tolist()
@@ -251,14 +251,14 @@ class PeriodicProblem:
     def called(
         self, belt_speeds: Floats, states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
     ) -> tuple[Curve, float]:
-        """What is wanted of the orbits at these belt speeds, and kernel time [s]."""
+        """Return what is wanted of the orbits at these belt speeds, and kernel time [s]."""
         span, told = periods * self.common, (belt_speeds, states, goal, wanted)
         if self.kernel is answer_curve:
             return KernelCall(answer_curve).timed(self.maps, span, *told)
         return KernelCall(self.kernel, self.law).timed(self.body._replace(periods=span), *told)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None], periods: int = 1) -> Orbits:
-        """The motions from these states, one for each scene; without panels where there is no state.
+        """Return the motions from these states, one for each scene; without panels where there is no state.
 
         periods: of everything that changes in time, in each.
         """
@@ -276,12 +276,12 @@ class PeriodicProblem:
     def _recorded(
         self, places: list[int], scenes: Sequence[Scene], states: Floats, periods: int = 1
     ) -> Orbits:
-        """The orbits of the scenes at these places, one by one."""
+        """Return the orbits of the scenes at these places, one by one."""
         curve, _ = self.called(belt_speeds_of(scenes)[places], states, self.goal, RECORDED, periods)
         return _orbits_at(places, curve.orbits, curve.ends, len(scenes))
 
     def multipliers(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Floats:
-        """The largest modulus of the Floquet multipliers of these orbits; NaN where there is no state."""
+        """Return the largest modulus of the Floquet multipliers of these orbits; NaN where there is no state."""
         places, known = self._known(states)
         found = np.full(len(scenes), np.nan)
         if self.in_lanes(len(places)):
@@ -300,12 +300,12 @@ class PeriodicProblem:
         return places, np.array([states[i] for i in places]).reshape(len(places), self.size)
 
     def settle(self, start: Initial) -> tuple[Floats, int]:
-        """The state at which the mass stays put on a belt at rest, and in how many periods; negative for never."""
+        """State at which the mass stays put on a belt at rest, and in how many periods; negative for never."""
         accuracy = 1e-13 * self.mass.normal_load
         return KernelCall(settle)(self.maps, self.common, *self.place(0.0, start), accuracy)
 
     def state_at(self, belt_speed: float, start: Initial | None) -> Floats:
-        """The state of a start (None: on the friction-free orbit)."""
+        """Return the state of a start (None: on the friction-free orbit)."""
         # on the friction-free orbit it remembers as in sliding that never reverses
         z = -memory_of_sliding(self.law, belt_speed) if start is None else 0.0
         state = np.empty(self.size)
@@ -315,7 +315,7 @@ class PeriodicProblem:
     def carried(
         self, belt_speed: float, state: Floats, most: int, known: KnownOrbit | None = None
     ) -> Transient:
-        """The motion from a state, that of another belt speed for one, for so many periods at most.
+        """Return the motion from a state, that of another belt speed for one, for so many periods at most.
 
         known: an orbit that attracts; a motion that is sure to end there is followed no farther.
         """
@@ -330,7 +330,7 @@ class PeriodicProblem:
         return x, np.array([complex(u).real for _, u in pairs]) + self.body.frequency * sine.real
 
     def runs_away(self, state: Floats) -> bool:
-        """Whether a mass in this state never comes back."""
+        """Check whether a mass in this state never comes back."""
         x, _velocity = interpreted(unpack)(self.body, state, self.zero)
         return bool(interpreted(runs_away)(self.body, x))
 
@@ -350,7 +350,7 @@ class PeriodicProblem:
         return self.followed_on(belt_speed, state, periods, 1e-9)
 
     def followed_on(self, belt_speed: float, state: Floats, periods: int, accuracy: float) -> Transient:
-        """The motion from a state for so many periods, each by itself; fewer where they take too many steps.
+        """Return the motion from a state for so many periods, each by itself; fewer where they take too many steps.
 
         accuracy: of their maps, over the normal load.
         """
@@ -409,7 +409,7 @@ def largest_modulus(matrices: Floats) -> Floats:
 
 
 def _orbits_at(places: list[int], track: Track, ends: Any, n: int) -> Orbits:
-    """The orbits of a track as those of the scenes at these places, of n."""
+    """Return the orbits of a track as those of the scenes at these places, of n."""
     panels, filled = np.zeros(n, np.int64), int(ends[-1]) if len(ends) else 0
     panels[places] = np.diff(ends, prepend=0)
     parts = track.tau[:filled], track.x[:filled], track.v[:filled], track.friction[:filled]

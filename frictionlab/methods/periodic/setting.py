@@ -49,7 +49,7 @@ from frictionlab.scene.body import BodyNumbers
 
 
 class SpanImage(NamedTuple):
-    """What a map met on its way: the integral of friction, in shares of the mean normal load, as x1 + i x2; the time
+    """Sums of a map on its way: the integral of friction, in shares of the mean normal load, as x1 + i x2; the time
     at rest, the slowest slip, when rest ended last (-1: it did not), and the steps (-1: it gave up)."""
 
     friction_impulse: complex
@@ -60,7 +60,7 @@ class SpanImage(NamedTuple):
 
 
 class Orders(NamedTuple):
-    """What maps of a law are good for.
+    """Facts of a law that its maps use.
 
     finer: how much finer the two maps are that agree in the end. share: of the error before a Newton step to a map
     finer by ``FINER``, what stands in where two means agree by chance. Of order eight both are fitted to 2,500 random
@@ -78,7 +78,7 @@ class Orders(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """What bounds on a mean are made of: the span of a map, the damping along x1, the mean normal load."""
+    """Numbers of which bounds on a mean are made: the span of a map, the damping along x1, the mean normal load."""
 
     period: float
     damping: float
@@ -117,7 +117,7 @@ class Maps(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """The maps of a law on a body, the speed of the belt, and how many periods of the drive a map spans."""
+    """Maps of a law on a body, the speed of the belt, and how many periods of the drive a map spans."""
 
     maps: Maps
     belt_speed: float
@@ -134,7 +134,7 @@ def scales_on(body: BodyNumbers) -> Scales:
 
 
 class LawOnBody(NamedTuple):
-    """What the maps of a scene are compiled for."""
+    """Kinds of scene that maps are compiled for."""
 
     law: Any
     body: BodyNumbers
@@ -146,7 +146,7 @@ _of_kind = by_dimension(lambda value, zero: value.real, lambda value, zero: valu
 
 @inner
 def _over(body: BodyNumbers, periods: float) -> BodyNumbers:
-    """The body, its map spanning so many periods."""
+    """Return the body, its map spanning so many periods."""
     return changed(body, periods, body.varying)
 
 
@@ -229,7 +229,7 @@ _has_memory = by_law(lambda law: False, _remembers, _remembers)
 
 
 def _made_by(image_of_state: Any, of_sliding: Orders, of_memory: Orders) -> Any:
-    """The kernel ``maps_of(law, body)``, its spans followed by ``image_of_state``."""
+    """Return the kernel ``maps_of(law, body)``, its spans followed by ``image_of_state``."""
     addresses = addresses_of(
         [
             Addressed(_followed_by(image_of_state), _FOLLOW),
@@ -302,45 +302,45 @@ def paced_map(setting: Setting, state: Any, residual: Any, stepping: Stepping) -
 
 @inner
 def period_map(setting: Setting, state: Any, residual: Any, accuracy: float) -> SpanImage:
-    """The image of a state after one span; leaves image - state in residual."""
+    """Return the image of a state after one span; leaves image - state in residual."""
     return paced_map(setting, state, residual, noting(accuracy, track_of(0)))
 
 
 @inner
 def recorded_map(setting: Setting, state: Any, residual: Any, accuracy: float, track: Track) -> SpanImage:
-    """The same, noted on a track with room."""
+    """Return the same, noted on a track with room."""
     return paced_map(setting, state, residual, noting(accuracy, track))
 
 
 @inner
 def kept_map(setting: Setting, state: Any, residual: Any, accuracy: float, pace: Pace) -> SpanImage:
-    """The same, its steps kept in a pace with room."""
+    """Return the same, its steps kept in a pace with room."""
     return paced_map(setting, state, residual, keeping(accuracy, pace))
 
 
 @inner
 def repeated_map(setting: Setting, state: Any, residual: Any, accuracy: float, pace: Pace) -> SpanImage:
-    """The same by the steps of another state."""
+    """Return the same by the steps of another state."""
     return paced_map(setting, state, residual, repeating(accuracy, pace))
 
 
 @inner
 def spans_at_rest(setting: Setting, state: Any) -> float:
-    """How many whole spans, at least one, a mass that has rested for one is sure to be carried on without slip."""
+    """Count the whole spans, at least one, for which a mass that rested for one is surely carried on without slip."""
     maps = setting.maps
     return _rest_at(maps.rest, maps.place, (setting.belt_speed, setting.periods, state))
 
 
 @inner
 def write_state(maps: Maps, state: Any, x: complex, v: complex, z: complex) -> None:
-    """The state of a mass at x moving at v at tau = 0; z: the deflection of its bristle, of another memory the
+    """Write the state of a mass at x moving at v at tau = 0; z: the deflection of its bristle, of another memory the
     velocity of steady sliding that it remembers."""
     _start_at(maps.start, maps.place, (state, x, v, z))
 
 
 @inner
 def write_sliding_state(setting: Setting, state: Any) -> float:
-    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed.
+    """State at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed.
 
     Returns the coefficient of that, with the sign of the belt.
     """
@@ -349,28 +349,28 @@ def write_sliding_state(setting: Setting, state: Any) -> float:
 
 @inner
 def ends_in_sliding(setting: Setting, state: Any) -> bool:
-    """Whether a motion surely slides on in one direction, on a belt where slip need not reverse: it is written."""
+    """Write a motion on a belt where slip need not reverse; True if it surely slides on in one direction."""
     maps = setting.maps
     return _ends_at(maps.ends, maps.place, (setting.belt_speed, setting.periods, state))
 
 
 @inner
 def slip_keeps_its_side(setting: Setting) -> bool:
-    """Whether the belt is, to rounding, as fast as the vibration without friction or faster, and dashpots act."""
+    """Check whether dashpots act and the belt is, to rounding, no slower than the vibration without friction."""
     maps = setting.maps
     return maps.per_drive.damping > 0.0 and abs(setting.belt_speed) >= (1.0 - 1e-14) * maps.fastest
 
 
 @inner
 def guess_state(setting: Setting, state: Any, inverse: Any) -> None:
-    """Where a search begins: a state, and the inverse of (monodromy - identity) with friction as a dashpot."""
+    """Write the start of a search: a state, and the inverse of (monodromy - identity) with friction as a dashpot."""
     maps = setting.maps
     guess_inverse(setting, _slide_at(maps.guess, maps.place, (setting.belt_speed, state)), inverse)
 
 
 @inner
 def guess_inverse(setting: Setting, rubbing: float, inverse: Any) -> None:
-    """The inverse of (monodromy - identity) with friction as a dashpot of this coefficient."""
+    """Write the inverse of (monodromy - identity) with friction as a dashpot of this coefficient."""
     _free_at(setting.maps.free, setting.maps.place, (setting.periods, rubbing, inverse))
 
 

@@ -24,7 +24,7 @@ from frictionlab.motion.maps.rates import MEMORY, workspace
 from frictionlab.scene.body import BodyNumbers
 
 NEAR = 1e-3
-"""Of the size of a state: how near to an orbit that attracts a motion must come to be said to end there."""
+"""Distance to an orbit that attracts, over the size of a state, at which a motion is said to end there."""
 GRAZING = 1e-5
 """Share of the vibration's speed by which the belt is faster where coming near is enough: no bound is left there."""
 
@@ -47,7 +47,7 @@ memory_of_sliding = by_law(
 
 @inner
 def write_sliding(case: Case, state: Any) -> float:
-    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed.
+    """State at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed.
 
     Returns the coefficient of that, with the sign of the belt.
     """
@@ -60,7 +60,7 @@ def write_sliding(case: Case, state: Any) -> float:
 
 @inner
 def _impulse_response(body: BodyNumbers) -> float:
-    """The integral of the size of the position's response to an impulse."""
+    """Return the integral of the size of the position's response to an impulse."""
     stiffness, half = (
         body.stiffness_mean + body.stiffness_split,
         0.5 * (body.damping_mean + body.damping_split),
@@ -102,7 +102,7 @@ def _ends_without_bristle(case: Case, state: Any) -> bool:
 
 
 def _ends_with_a_bristle(case: Case, state: Any) -> bool:
-    """Whether a motion on so fast a belt surely slides on in one direction: it is then written as that orbit.
+    """Check whether a motion on so fast a belt surely slides on in one direction: it is then written as that orbit.
 
     Friction that only grows to its limit, no faster than at the fastest slip, moves the mass at its quasi-static
     place; off it, energy falls. While both together leave the mass slower than the belt no slip reverses.

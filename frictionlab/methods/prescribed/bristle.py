@@ -39,7 +39,7 @@ class Along(NamedTuple):
 
     @property
     def size(self) -> float:
-        """The amplitude of the oscillation."""
+        """Return the amplitude of the oscillation."""
         return abs(self.phasor)
 
     @property
@@ -65,7 +65,7 @@ def line_loop(law: BristleLaw, along: Along) -> Closed | Open:
 
 
 def legs_of(law: BristleLaw, along: Along, cuts: float) -> Legs:
-    """The legs of a slip that reverses, under a law with an exact path."""
+    """Return the legs of a slip that reverses, under a law with an exact path."""
     reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
     length = min(reach, 1.0 / fastest) if 0.0 < fastest < math.inf else reach
     return Legs(along.turn, along.size / along.frequency, along.size, length, reach, cuts)
@@ -94,7 +94,7 @@ def _one_way(law: BristleLaw, along: Along) -> Closed:
 
 
 def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats) -> Loop:
-    """The loop at the phase and with the signs of the given slip."""
+    """Return the loop at the phase and with the signs of the given slip."""
     start, width, slip, deflection, friction = parts
     shift = -0.5 * math.pi * along.side - cmath.phase(along.phasor)
     side = complex(-along.side, 0.0)
@@ -143,7 +143,7 @@ class BristlePoint:
 
 
 def _resisted(law: BristleLaw, slip: Any, deflection: Any) -> Vectors:
-    """The friction coefficient at every slip velocity and deflection."""
+    """Return the friction coefficient at every slip velocity and deflection."""
     rub = np.empty(slip.size, slip.dtype)
     KernelCall(friction_of_each, law)(slip.ravel(), deflection.ravel(), rub)
     return rub.reshape(slip.shape).astype(complex)

@@ -1,4 +1,4 @@
-"""The closed loop of a bristle law with an exact path under slip along the belt: two legs between reversals.
+"""Closed loop of a bristle law with an exact path under slip along the belt: two legs between reversals.
 
 Slip of velocity speed*(kappa + cos(psi)), 0 <= kappa < 1, goes forward while |psi| < pi - phi and back for the rest,
 with cos(phi) = kappa. Along each leg the law gives the deflection exactly at any stiffness; there remain one equation
@@ -31,7 +31,7 @@ of two deflections it would lose the digits that determine the loop of a soft co
 
 
 class Legs(NamedTuple):
-    """The two legs: half the angle of the backward one, slip amplitude [length], speed [velocity].
+    """Two legs: half the angle of the backward one, slip amplitude [length], speed [velocity].
 
     length: the path on which the deflection changes most rapidly; reach: its largest value [length]. cuts: number of
     parts into which panels are divided.
@@ -75,7 +75,7 @@ def _velocity(legs: Legs, side: float, angle: float) -> float:
 
 @inner
 def _angle_of(legs: Legs, side: float, path: float, longest: float) -> float:
-    """The angle at which the slip of a leg has this length, by bisection in its logarithm."""
+    """Return the angle at which the slip of a leg has this length, by bisection in its logarithm."""
     # Bisection in the logarithm: angles down to 1e-26 are as quick to find as large ones.
     low, high = -60.0, math.log(longest)
     for _ in range(80):
@@ -94,7 +94,7 @@ def _deflected(law: Any, z: float, side: float, path: float) -> float:
 
 @inner
 def gained(law: Any, length: float, z: float, side: float, path: float) -> float:
-    """The change of deflection over a leg, with full relative accuracy for soft contacts, too.
+    """Return the change of deflection over a leg, with full relative accuracy for soft contacts, too.
 
     length: as in ``Legs``.
     """
@@ -110,7 +110,7 @@ def gained(law: Any, length: float, z: float, side: float, path: float) -> float
 
 @inner
 def _opened(law: Any, legs: Legs, z: float, forward: float, back: float) -> float:
-    """The change of deflection over both legs; it decreases as the deflection at the start increases."""
+    """Return the change of deflection over both legs; it decreases as the deflection at the start increases."""
     # The second leg starts where the first ends.
     up = gained(law, legs.length, z, 1.0, forward)
     return up + gained(law, legs.length, z + up, -1.0, back)
@@ -118,7 +118,7 @@ def _opened(law: Any, legs: Legs, z: float, forward: float, back: float) -> floa
 
 @inner
 def _closed(law: Any, legs: Legs, forward: float, back: float) -> float:
-    """The deflection at the start that both legs reproduce: regula falsi (Illinois) within a bracket."""
+    """Return the deflection at the start that both legs reproduce: regula falsi (Illinois) within a bracket."""
     # The change over both legs decreases with the deflection: its zero is bracketed by the largest deflections. A
     # contact that saturates returns exactly to one of them.
     low, high = -legs.reach, legs.reach
@@ -175,7 +175,7 @@ def _edges(law: Any, legs: Legs, z: float, side: float, longest: float, edges: A
 
 @njit
 def closed_legs(law: Any, legs: Legs) -> Any:
-    """The closed loop on its panels, as arrays [panels] and [panels, nodes].
+    """Return the closed loop on its panels, as arrays [panels] and [panels, nodes].
 
     Returns starts and widths of the panels (angles after the start of the forward leg), slip velocity, deflection
     and friction at their nodes.

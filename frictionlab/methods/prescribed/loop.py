@@ -1,4 +1,4 @@
-"""What is found of a prescribed slip: its mean friction, and one period of a closed deflection on panels."""
+"""Results of a prescribed slip: its mean friction, and one period of a closed deflection on panels."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ELASTIC = (
 
 @dataclass(frozen=True)
 class PrescribedMean:
-    """What a law makes of a prescribed slip: mean friction (x1 + i x2), and the error of its x1.
+    """Result of a law under a prescribed slip: mean friction (x1 + i x2), and the error of its x1.
 
     low, high: of a slip that leaves the mean open between two numbers. Whatever is not known is NaN.
     """
@@ -50,21 +50,21 @@ class Loop(NamedTuple):
     friction: Vectors
 
     def total(self, values: Any) -> complex:
-        """The integral over the period of the angle."""
+        """Return the integral over the period of the angle."""
         return complex((self.width[:, None] * self.shares * values).sum())
 
     @property
     def mean(self) -> complex:
-        """The mean coefficient along x1 (+ i x2), positive where the belt drags towards it."""
+        """Return the mean coefficient along x1 (+ i x2), positive where the belt drags towards it."""
         return -self.total(self.friction) / (2.0 * math.pi)
 
     @property
     def largest(self) -> float:
-        """The largest coefficient met."""
+        """Return the largest coefficient met."""
         return float(np.abs(self.friction).max())
 
     def at(self, angle: Floats, values: Any) -> Any:
-        """What has these values at the points of panels, at angles of the period, by each panel's polynomial."""
+        """Interpolate values at the points of panels to angles of the period, by each panel's polynomial."""
         begin = self.start[0]
         turned = begin + np.mod(angle - begin, 2.0 * math.pi)
         panel = np.clip(np.searchsorted(self.start, turned, side="right") - 1, 0, len(self.start) - 1)
@@ -96,6 +96,6 @@ class Open(NamedTuple):
 
     @classmethod
     def up_to(cls, law: BristleLaw, deflection: float, reason: str) -> Open:
-        """The mean is the friction of a constant deflection, any up to this one."""
+        """Return the mean is the friction of a constant deflection, any up to this one."""
         most = abs(law.friction(0.0, deflection, 0.0))
         return cls(-most, most, reason)

@@ -39,7 +39,7 @@ class AxesPoint:
         self.found = PrescribedMean(complex(first.mean.real, known), first.error, first.low, first.high)
 
     def orbit(self) -> Orbit | None:
-        """The prescribed motion and the friction along it; NaN across the belt where the mean there is open."""
+        """Prescribed motion and the friction along it; NaN across the belt where the mean there is open."""
         one, other = self.along.orbit(), self.across.orbit()
         if one is None:
             return None
@@ -55,7 +55,7 @@ class AxesPoint:
 
 
 def _axes(scene: Scene) -> tuple[Scene, Scene]:
-    """The slip along the belt alone, and that across as one along a belt at rest."""
+    """Return the slip along the belt alone, and that across as one along a belt at rest."""
     slip, across = scene.slip, scene.transverse_slip
     still = Slip(velocity_amplitude=0.0, frequency=scene.frequency)
     first, second = slip or still, still
@@ -94,7 +94,7 @@ POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
     "deflections": MemoryPoint,
     "scalars": MemoryPoint,
 }
-"""What answers a scene of prescribed slip, by what the law remembers."""
+"""Solvers of a scene of prescribed slip, by what the law remembers."""
 
 
 def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
@@ -118,7 +118,7 @@ def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:
 
 
 def _told_uniqueness(row: Point) -> str:
-    """How it is known of a point that is ok that no memory at the start leads elsewhere; said in its model or reason.
+    """Tell how it is known that no memory at the start of an ok point leads elsewhere, in its model or reason.
 
     Of bristles nothing is asked: the deflection that repeats is looked for as if there were one.
     """

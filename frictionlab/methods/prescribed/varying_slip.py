@@ -27,7 +27,7 @@ NO_SLIP = "the slip rests for a part of the period: friction there is any value 
 WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
 HALVINGS, MOST_PANELS, SAME_MEAN = 6, 4000, 1e-14
-"""How often panels are halved, up to how many, and the share of friction that halving may change."""
+"""Most halvings of panels, most panels, and the share of friction that halving may change."""
 _CLOSEST = EPSILON
 """Half width of the panels, in shares of the period, at which the refinement towards rest ends: narrower ones have no
 middle at the end of the period."""
@@ -55,7 +55,7 @@ class VaryingSlip(NamedTuple):
 
     @classmethod
     def of_sines(cls, frequency: float, along: Any, across: Any) -> VaryingSlip:
-        """Of harmonics 1, 2, ... of velocities Im(phasor exp(i k angle)) under a constant normal load."""
+        """Return the slip of harmonics 1, 2, ... of velocities Im(phasor exp(i k angle)), for a constant load."""
         still = Piecewise(np.array([0.0, math.tau / frequency]), np.zeros(1), np.zeros(1))
         waves = [
             tuple(Wave(frequency * (k + 1), each) for k, each in enumerate(row)) for row in (along, across)
@@ -66,7 +66,7 @@ class VaryingSlip(NamedTuple):
 
     @property
     def on_the_line(self) -> bool:
-        """Whether nothing oscillates across the belt."""
+        """Check whether nothing oscillates across the belt."""
         return self.across.size() == 0.0
 
     def keeps_its_side(self, belt_speed: float) -> bool:
@@ -131,7 +131,7 @@ def _path(velocity: Piecewise, tau: Floats, k: PieceNumbers) -> Floats:
 
 
 def piece_at(edges: Floats, tau: Floats) -> PieceNumbers:
-    """The pieces on which these times are, inside."""
+    """Return the pieces on which these times are, inside."""
     return np.clip(np.searchsorted(edges, tau, side="right") - 1, 0, len(edges) - 2)
 
 
@@ -142,7 +142,7 @@ def nodes(edges: Floats) -> tuple[Floats, Floats]:
 
 
 def sliding_vectors(law: FrictionLaw, slip: Vectors) -> Vectors:
-    """The friction that resists each slip; zero at rest, which is an instant without duration."""
+    """Return the friction that resists each slip; zero at rest, which is an instant without duration."""
     if law.constant_sliding_friction():
         return law.sliding_friction(1.0) * _directions(slip)
     friction = np.empty(slip.size, np.complex128)
@@ -194,13 +194,13 @@ class VaryingPoint:
         return PrescribedMean(mean, error)
 
     def _turns(self) -> MeanDirection | None:
-        """The mean direction of a slip along the belt."""
+        """Return the mean direction of a slip along the belt."""
         if not self.slip.on_the_line:
             return None
         return mean_direction(self.slip.along.minus(self.belt_speed), self.slip.normal_load)
 
     def _resting(self) -> float:
-        """The share of the normal load that acts while slip rests."""
+        """Return the share of the normal load that acts while slip rests."""
         along, load = self.slip.along.minus(self.belt_speed), self.slip.normal_load
         k = np.flatnonzero(along.at_rest() & self.slip.across.at_rest())
         return float(load.integral(along.edges[k], along.edges[k + 1], k).sum()) / along.period
@@ -226,7 +226,7 @@ class VaryingPoint:
         return fine + first * turns.mean, error + first * turns.error
 
     def _mean(self, edges: Floats, k: PieceNumbers, less: float) -> tuple[complex, float]:
-        """Of friction less a constant coefficient, and the largest friction met."""
+        """Return the mean of friction less a constant coefficient, and the largest friction met."""
         tau, weights = nodes(edges)
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
@@ -241,7 +241,7 @@ class VaryingPoint:
         return PrescribedMean(low=mean - spread, high=mean + spread)
 
     def orbit(self) -> Orbit | None:
-        """The prescribed motion and the friction along it."""
+        """Return the prescribed motion and the friction along it."""
         return (
             self.slip.orbit(*self.slip.friction(self.belt_speed, self.law)) if self.status == "ok" else None
         )

@@ -105,7 +105,7 @@ def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
 
 
 def bristles(scenes: Sequence[Scene], law: BristleLaw) -> Modelled:
-    """The one balance of each of scenes that differ in belt speed alone."""
+    """Return the one balance of each of scenes that differ in belt speed alone."""
     mass, speeds = scenes[0].mass(), belt_speeds_of(scenes)
     law = law.under_load(mass.normal_load)
     points = [_point(_Balancing(mass, speed, law, {})) for speed in np.abs(speeds).tolist()]
@@ -123,7 +123,7 @@ def bristles(scenes: Sequence[Scene], law: BristleLaw) -> Modelled:
 
 
 def _orbit(scene: Scene, law: BristleLaw, balance: OneBalance | None, mean: float) -> Orbit | None:
-    """The motion about the position where its mean friction loads the spring, its slip taken as prescribed."""
+    """Return the motion about the position where its mean friction loads the spring, its slip taken as prescribed."""
     if balance is None:
         return None
     mass = scene.mass()

@@ -1,4 +1,4 @@
-"""What reduced models share: the scenes they refuse, what a model says, and its distance to the full problem."""
+"""Base of reduced models: the scenes they refuse, what a model says, and its distance to the full problem."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from frictionlab.theory.rest import falls_slowly
 from frictionlab.values.quantities import Floats
 
 ROUNDING = 1e-10
-"""Of models, relative to the friction coefficient: their formulas keep twelve digits or more."""
+"""Rounding of models, relative to the friction coefficient: their formulas keep twelve digits or more."""
 TOLERANCE = 1e-9
 """On the mean of the full problem, relative to the friction coefficient in quick slip."""
 NOT_KNOWN = "the model error is not known, for the steady state is not"
@@ -41,7 +41,7 @@ DOES_NOT_DECAY = "without damping and without slip reversal the free oscillation
 
 
 class Modelled(NamedTuple):
-    """What a model says of n scenes.
+    """Answers of a model for n scenes.
 
     mean: friction coefficient, x1 + i x2 where it has two directions; NaN where the model has none. reasons: why a
     scene has no answer; empty where it has. orbit(i): the motion of scene i. error: of the numbers of the model,
@@ -63,10 +63,10 @@ class OfOneModel(ReducedModel):
 
     @abstractmethod
     def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
-        """What the model says of scenes that differ in belt speed alone, on ``steadied`` belts where it can be so."""
+        """Return the answers for scenes that differ in belt speed alone, on ``steadied`` belts if the model can."""
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
-        """The means of ``modelled``."""
+        """Return the means of ``modelled``."""
         return self.modelled(steadied_all(scenes), law).mean
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
@@ -95,7 +95,7 @@ class OfOneModel(ReducedModel):
 
 
 def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Modelled) -> tuple[Floats, list[str]]:
-    """The error of each mean, and why it is not known; the full problem is asked where nothing speaks against it."""
+    """Error of each mean, and why it is not known; the full problem is asked where nothing speaks against it."""
     own, reasons = found.error + np.zeros(len(scenes)), list(found.reasons)
     settled = np.zeros(len(scenes), np.bool_) if found.settled is None else found.settled
     error = np.where(settled, own, np.nan)
@@ -123,7 +123,7 @@ def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Modelled) -> tup
 
 
 def full_means(scene: Scene, law: FrictionLaw, belt_speeds: Floats) -> Answers:
-    """Of a scene at other belt speeds: by the exact method where it takes them, else by shooting."""
+    """Return the means of a scene at other belt speeds: by the exact method where it takes them, else by shooting."""
     free = [
         scene.model_copy(update={"initial": None, "dimensional": None, "belt_speed": speed})
         for speed in belt_speeds.tolist()
@@ -138,7 +138,7 @@ def full_answers(scenes: Sequence[Scene], law: FrictionLaw) -> Answers:
 
 
 def _carried(scene: Scene, orbit: Orbit | None) -> Orbit | None:
-    """The body's own motion on a belt that vibrates, from that of its equivalent drive."""
+    """Return the body's own motion on a belt that vibrates, from that of its equivalent drive."""
     other = equivalent_drive(scene)
     if orbit is None or other is None:
         return orbit
@@ -157,7 +157,7 @@ def steadied_all(scenes: Sequence[Scene]) -> Sequence[Scene]:
 
 
 def steadied(scene: Scene) -> Scene | None:
-    """The same of one scene, None where more than one sine is left."""
+    """Return the same of one scene, None where more than one sine is left."""
     steady = steadied_all([scene])[0]
     return steady if steady.is_harmonic else None
 
@@ -226,7 +226,7 @@ def modelled_along(
 
 
 def mean_position(scene: Scene, mean: complex) -> complex:
-    """Where the springs balance mean friction."""
+    """Return where the springs balance mean friction."""
     mass = scene.mass()
     return mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
 

@@ -33,7 +33,7 @@ from frictionlab.values.quantities import Floats
 
 
 def monotone_root(function: Callable[..., Floats], low: Floats, high: Floats, *rows: Floats) -> Floats:
-    """Where a function of each row crosses zero between low and high, to rounding; the nearer end where it does not.
+    """Find where a function of each row crosses zero between low and high, to rounding; else the nearer end.
 
     function(x, *rows) is elementwise: it is called with the rows that are not found yet. Chandrupatla's method, as
     scipy has it.
@@ -92,7 +92,7 @@ class HarmonicBalance(OfOneModel):
     tail: bool | None = Field(default=None, strict=True)
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Where the model has no motion to start from, or no friction that it can balance."""
+        """Return where the model has no motion to start from, or no friction that it can balance."""
         if self.tail:
             return NO_TAIL
         if scene.degrees_of_freedom == 0:
@@ -112,7 +112,7 @@ class HarmonicBalance(OfOneModel):
         return sampled_refusal(self.name, steady, law, self.harmonics)
 
     def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
-        """The harmonics that balance."""
+        """Return the harmonics that balance."""
         if isinstance(law, BristleLaw):
             return bristles(scenes, law)
         if self.harmonics > 1:
@@ -121,7 +121,7 @@ class HarmonicBalance(OfOneModel):
 
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
-    """The motion at belt speeds >= 0; from V_lin on, the friction-free one."""
+    """Return the motion at belt speeds >= 0; from V_lin on, the friction-free one."""
     angle = _reversal(scene, friction, belt_speeds)
     ratio = np.cos(angle)
     free, mass = friction_free_velocity(scene), scene.mass()

@@ -90,7 +90,7 @@ class Mdsm(OfOneModel):
         return super().solve(scenes, law, tolerance)
 
     def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
-        """The friction-free motion."""
+        """Return the friction-free motion."""
         if scenes[0].is_harmonic and _in_closed_form(scenes[0], law):
             return modelled_along(scenes, law, ModelWord.MDSM_CLOSED, _friction_free)
         return _averaged(scenes, law)
@@ -101,7 +101,7 @@ def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def _friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
-    """The linear response, whatever the friction."""
+    """Return the linear response, whatever the friction."""
     free = friction_free_velocity(scene)
     ratio = belt_speeds / free if free else np.where(belt_speeds > 0.0, math.inf, 0.0)
     mean = mean_prescribed_longitudinal(np.minimum(ratio, 1.0))
@@ -110,7 +110,7 @@ def _friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
 
 
 def friction_free_motion(scene: Scene) -> Motion:
-    """The linear response along and across the belt."""
+    """Return the linear response along and across the belt."""
     mass = scene.mass()
     along = mass.damping + 1j * (mass.frequency - mass.stiffness / mass.frequency)
     across = mass.transverse_damping + 1j * (mass.frequency - mass.transverse_stiffness / mass.frequency)
@@ -145,7 +145,7 @@ def _averaged(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
 
 
 def _friction_free_slip(scene: Scene, law: FrictionLaw) -> VaryingSlip:
-    """Of the friction-free motion over the belt's vibration, about the belt's mean speed."""
+    """Return the slip of the friction-free motion over the belt's vibration, about the belt's mean speed."""
     assert scene.normal_load is not None
     belt, velocity = VaryingSlip.of(scene.signals(), scene.normal_load), friction_free_response(scene, law, 1)
     assert velocity is not None
@@ -157,7 +157,7 @@ def _friction_free_slip(scene: Scene, law: FrictionLaw) -> VaryingSlip:
 
 
 def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
-    """The exact mean; where there is a closed form beyond the one along the belt, by that."""
+    """Return the exact mean; where there is a closed form beyond the one along the belt, by that."""
     answers = solve_prescribed(scenes, law, tolerance)
     if not law.constant_sliding_friction() or not scenes[0].is_harmonic:
         return answers
@@ -173,7 +173,7 @@ def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: flo
 
 
 def _closed_form(motion: Motion, belt_speed: float) -> tuple[float, str] | None:
-    """The mean relative to mu, and what slip it is of."""
+    """Return the mean relative to mu, and what slip it is of."""
     along, across = motion.velocity, motion.transverse_velocity
     if along == 0.0 and across != 0.0:
         mean = mean_prescribed_transverse(belt_speed / abs(across))

@@ -28,7 +28,7 @@ _FOUND = 1e-13
 
 
 class Around(NamedTuple):
-    """Of the velocity u after a unit step of force, at phases p in [0, 2 pi] after it and before it.
+    """Values of the velocity u after a unit step of force, at phases p in [0, 2 pi] after it and before it.
 
     both: u(p) + u(-p) - 2 u(0); apart: u(p) - u(-p); and their derivatives by p.
     """
@@ -66,7 +66,7 @@ def exact_response(mass: Mass) -> StepResponse:
 
 
 class DrivenLine(NamedTuple):
-    """The mass along the belt: how it answers friction that switches, the friction force and V_lin."""
+    """Mass along the belt: how it answers friction that switches, the friction force and V_lin."""
 
     response: StepResponse
     friction: float
@@ -87,7 +87,7 @@ class Reversals(NamedTuple):
 
 
 def reversals(line: DrivenLine, half: Floats) -> Reversals:
-    """The motions of these halves, in (0, pi/2]."""
+    """Return the motions of these halves, in (0, pi/2]."""
     u, free, friction = line.response(2.0 * half), line.friction_free, line.friction
     # Slip vanishes at both ends: the difference of the two equations, then their sum.
     cosine = friction * u.both / (free * np.sin(half))
@@ -102,7 +102,7 @@ def reversals(line: DrivenLine, half: Floats) -> Reversals:
 
 
 def reversals_at(line: DrivenLine, belt_speeds: Floats) -> Reversals:
-    """The motions at belt speeds in [0, V_lin), which rise as the half of forward slip falls.
+    """Return the motions at belt speeds in [0, V_lin), which rise as the half of forward slip falls.
 
     Newton's method between two ends, on all belt speeds at once; cut in two where a step leaves them.
     """

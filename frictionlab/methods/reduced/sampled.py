@@ -50,7 +50,7 @@ _ENOUGH, _MORE = 1e-9, 4
 _CLOSED = 1e-12
 """Force that balance lacks, relative to load and friction."""
 _ROUNDED = 1e4
-"""How many times that may be left where no step gains anything more."""
+"""Multiple of it that may be left where no step gains anything more."""
 _MOST_STEPS = 40
 _SPREADS = 0.5 ** np.arange(14)
 """Slip speeds over which a jump is spread, one after the other, relative to the largest velocity."""
@@ -60,7 +60,7 @@ _SLOWEST = 1e-12
 _NUDGE = 1e-6
 """Relative change of speed for the slope of a law."""
 _MOST_CORRECTIONS = 6
-"""Of a reversal."""
+"""Most corrections of a reversal."""
 
 
 def impedances(damping: float, stiffness: float, frequency: float, harmonics: int) -> Phasors:
@@ -96,7 +96,7 @@ class Equations(NamedTuple):
 
     @property
     def friction(self) -> float:
-        """The force of quick sliding."""
+        """Return the force of quick sliding."""
         return self.mass.normal_load * self.law.sliding_friction(1.0)
 
     @property
@@ -126,7 +126,7 @@ class SampledMotion(NamedTuple):
 
     @property
     def left(self) -> float:
-        """The largest of the forces."""
+        """Return the largest of the forces."""
         return float(np.abs(self.missing).max())
 
 
@@ -147,7 +147,7 @@ def sampled_refusal(name: str, scene: Scene, law: FrictionLaw, harmonics: int) -
 
 
 def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modelled:
-    """The motion of H harmonics of scenes that differ in belt speed alone."""
+    """Return the motion of H harmonics of scenes that differ in belt speed alone."""
     speeds, line = belt_speeds_of(scenes), scenes[0].load_along_belt_only
     motions = _motions(Equations.of(scenes[0], law, harmonics), speeds)
     means = np.array([complex(np.nan, np.nan) if each is None else -complex(*each.mean) for each in motions])
@@ -180,7 +180,7 @@ def _motions(what: Equations, belt_speeds: Floats) -> list[SampledMotion | None]
 
 
 def balanced(what: Equations, belt_speed: float, start: Phasors) -> SampledMotion | None:
-    """The motion that Newton's method finds from these velocities; None where it does not settle."""
+    """Return the motion that Newton's method finds from these velocities; None where it does not settle."""
     directions, harmonics = start.shape
     fewest, most = _SAMPLES[directions]
     count, found = 2 ** math.ceil(math.log2(max(fewest, _PER_HARMONIC * harmonics))), None
@@ -256,7 +256,7 @@ def _speeds(slip: Floats) -> Floats:
 
 
 def _waves(phasors: Phasors, count: int) -> Floats:
-    """The sums of harmonics at equal steps of the angle."""
+    """Return the sums of harmonics at equal steps of the angle."""
     spectrum = np.zeros((len(phasors), count // 2 + 1), np.complex128)
     spectrum[:, 1 : phasors.shape[1] + 1] = 0.5 * count * phasors
     return np.asarray(np.fft.irfft(spectrum, count, axis=1))
@@ -298,7 +298,7 @@ def _switches(velocity: Phasors, slip: Floats, belt_speed: float) -> tuple[Phaso
 
 
 def _newton_step(what: Equations, found: SampledMotion) -> Phasors | None:
-    """The change of the velocities that removes what is missing, real and imaginary parts apart."""
+    """Return the change of the velocities that removes what is missing, real and imaginary parts apart."""
     directions, harmonics = found.missing.shape
     derivative = _derivative(what, found)
     around = np.concatenate([derivative, np.conj(derivative[:, :, :0:-1])], axis=2)
@@ -337,7 +337,7 @@ def _derivative(what: Equations, found: SampledMotion) -> Phasors:
 
 
 def _orbit(scene: Scene, law: FrictionLaw, velocity: Phasors, mean: complex) -> Orbit:
-    """The motion about the position where its mean friction loads the springs, on panels that end at reversals."""
+    """Motion about the position where its mean friction loads the springs, on panels that end at reversals."""
     phasors = [*(1j * velocity).tolist(), [0j] * velocity.shape[1]]  # Re(V e) = Im(i V e)
     slip = VaryingSlip.of_sines(scene.frequency, phasors[0], phasors[1])
     orbit = slip.orbit(*slip.friction(scene.belt_speed, law))

@@ -1,4 +1,4 @@
-"""The steady states of a driven mass along a curve in belt speed: closed orbits that every start must reach."""
+"""Steady states of a driven mass along a curve in belt speed: closed orbits that every start must reach."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
 
 
 class SteadyStates(Ledger):
-    """The steady states of a curve, as far as they are known.
+    """Steady states of a curve, as far as they are known.
 
     spans: of all that changes in time, in the orbit of each. multipliers: NaN where nothing has asked for them.
     reached: for how many periods the two cheap starts were followed until they ended here, 0 where they do not.
@@ -179,7 +179,7 @@ class SteadyStates(Ledger):
             self.matrices[where[row]] = curve.matrices[row]
 
     def _held(self, where: list[int]) -> set[int]:
-        """Where friction can hold the mass at all times and the belt is too slow to keep it from rest."""
+        """Return where friction can hold the mass at all times and the belt is too slow to keep it from rest."""
         near_rest = self.near_rest
         if near_rest is None or not can_hold(self.scenes.scene, near_rest.law):
             return set()
@@ -187,7 +187,7 @@ class SteadyStates(Ledger):
         return set(np.array(where)[(speeds > 0.0) & (speeds < near_rest.swing)].tolist())
 
     def _repeats(self, curve: Curve, row: int, multiplier: float, problem: PeriodicProblem) -> bool:
-        """Whether a motion beside an orbit goes on beside it: difference quotients know less of that."""
+        """Check whether a motion beside an orbit goes on beside it: difference quotients know less of that."""
         known = 1e-6 if problem is self.problem else 1e-12
         return multiplier > 1.0 - known and not _at_rest(curve, row)
 
@@ -205,7 +205,7 @@ class SteadyStates(Ledger):
             self._compare_starts(i)
 
     def settle(self, i: int) -> None:
-        """The state in which a mass that friction can hold comes to rest from scene.initial; else a range."""
+        """Find the state in which a mass that friction can hold comes to rest from scene.initial; else a range."""
         start = self.scenes[i].initial
         if start is None:
             scene, law = self.scenes[i], self.problem.law
@@ -278,7 +278,7 @@ class SteadyStates(Ledger):
         return [found_state(self.problem, i, one, reached) for one in different]
 
     def _states_by(self, problem: PeriodicProblem, spans: int = 1) -> list[Floats | None]:
-        """The states of the orbits of so many spans that one way of solving has found."""
+        """Return the states of the orbits of so many spans that one way of solving has found."""
         each = zip(self.states, self.solved_by, self.spans, strict=True)
         return [state if by is problem and length == spans else None for state, by, length in each]
 
@@ -295,7 +295,7 @@ class SteadyStates(Ledger):
         return replace(found, periods=READ_OVER)
 
     def _floquet(self) -> Floats:
-        """The largest multipliers, where those of every degree of freedom are known; computed where not known yet."""
+        """Largest multipliers, where those of every degree of freedom are known; computed where not known yet."""
         if not self.whole:
             return np.full(len(self.scenes), np.nan)
         found = self.multipliers
@@ -339,7 +339,7 @@ class SteadyStates(Ledger):
         return Multipliers(modulus, error, reason)
 
     def _attracts(self, i: int) -> bool:
-        """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
+        """Check whether no small disturbance leaves the answer, and both of the cheap starts end there."""
         return self.status[i] == "ok" and self.reached[i] > 0 and not self.multipliers[i] > 1.0 + SURELY
 
     def _may_hold(self, i: int) -> bool:
@@ -386,7 +386,7 @@ class SteadyStates(Ledger):
             self._judge_starts(there)
 
     def _judge_starts(self, i: int) -> None:
-        """The answer that all starts reach; else the one reached from scene.initial, or none.
+        """Keep the answer that all starts reach; else the one reached from scene.initial, or none.
 
         Starts that were stopped on their way tell nothing of where they lead.
         """
@@ -466,7 +466,7 @@ class SteadyStates(Ledger):
         self.reason[i] = found.average.sentence(float(self.window[i]), DRIVEN)
 
     def _known(self, i: int) -> float:
-        """The largest multiplier, where those of every degree of freedom are known."""
+        """Return the largest multiplier, where those of every degree of freedom are known."""
         return float(self.multipliers[i]) if self.whole else math.nan
 
     def clear(self, i: int) -> None:
@@ -501,7 +501,7 @@ def _model(scene: Scene, problem: PeriodicProblem, solved_by: PeriodicProblem) -
 
 
 def _multipliers(curve: Curve) -> Floats:
-    """The largest modulus of each orbit's; NaN where the maps were not differentiated."""
+    """Return the largest modulus of each orbit's; NaN where the maps were not differentiated."""
     if not len(curve.matrices):
         return np.full(len(curve.states), np.nan)
     return largest_modulus(curve.matrices)

@@ -24,12 +24,12 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
 
 BY_CLOSING, FROM_BELOW, FROM_ABOVE = "closed orbit", "the next lower belt speed", "the next higher belt speed"
-"""Where a state is found from, other than a start: by the search for an orbit, by continuation from either side."""
+"""Origins of a state other than a start: by the search for an orbit, by continuation from either side."""
 
 
 @dataclass
 class _Point:
-    """The states at one belt speed, each with where it was found from; ended: where its starts ended."""
+    """States at one belt speed, each with where it was found from; ended: where its starts ended."""
 
     place: int
     followed: FollowedStarts
@@ -45,7 +45,7 @@ class _Point:
 def follow_states(
     scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, count: int
 ) -> list[FoundState]:
-    """The states of driven scenes in ascending belt speed, by so many starts each and from those of their neighbours.
+    """States of driven scenes in ascending belt speed, by so many starts each and from those of their neighbours.
 
     Nothing where friction holds the mass at rest: there every place in a range is one.
     """

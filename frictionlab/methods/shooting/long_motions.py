@@ -24,11 +24,11 @@ for so many steps at most, and three lengths would not do."""
 SMALL_ERROR = 1e-4
 """Error of the mean friction that is small enough, where the tolerance is smaller."""
 ACCURACY, FINER = 1e-7, 1e-9
-"""Of the maps of these periods, over the normal load; and of those that tell what they may be off by."""
+"""Accuracy of the maps of these periods, over the normal load; and of those that tell their error."""
 HARDLY = 1e-6
 """Error of the mean of a chaotic motion below which maps may be off by more."""
 REPEATED = 1e-6
-"""How near to an earlier one, over its size, a state is where the motion repeats."""
+"""Distance of a state to an earlier one, over its size, at which the motion repeats."""
 
 
 class LongMotion:
@@ -83,17 +83,17 @@ class LongMotion:
 
     @property
     def may_go_on(self) -> bool:
-        """Whether it has no end yet, and its steps are not too many to be followed for long enough."""
+        """Check whether it has no end yet, and its steps are not too many to be followed for long enough."""
         stopped = self.start.stopped or 0 < len(self.means) < FEWEST_FOLLOWED
         return self.end is None and not stopped
 
     @property
     def stays(self) -> bool:
-        """Whether it is not on its way elsewhere: growing, or dying out, in every part of the time."""
+        """Check whether it is not on its way elsewhere: growing, or dying out, in every part of the time."""
         return len(self.means) >= FEWEST_AVERAGED and not drifts(self.sizes)
 
     def averaged(self, mean: LongMean | None) -> Attractor:
-        """Where it leads: a closed orbit, or a motion with this mean over all of its attractor."""
+        """Return where it leads: a closed orbit, or a motion with this mean over all of its attractor."""
         if self.end is not None or mean is None:
             return self.end or self.start
         low, high = float(self.means.min()), float(self.means.max())
@@ -112,7 +112,7 @@ def late_period(states: Floats) -> int:
 
 
 def drifts(sizes: Floats) -> bool:
-    """Whether the mean of these grows from each part to the next, or falls: by chance once in 20,000 times."""
+    """Check whether the mean of these grows from each part to the next, or falls: by chance once in 20,000 times."""
     steps = np.diff([part.mean() for part in np.array_split(sizes, BLOCKS)])
     return bool((steps > 0.0).all() or (steps < 0.0).all())
 
@@ -145,7 +145,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
 def once_joined(
     motions: dict[int, LongMotion], means: dict[int, LongMean], repeats: bool
 ) -> dict[int, LongMean]:
-    """The same, once chaotic motions have been followed on to see whether they join another state; the commonest mean
+    """Same, once chaotic motions have been followed on to see whether they join another state; the commonest mean
     stays, unless other starts repeat.
 
     Chaos may linger for hundreds of periods beside an orbit that repels.
@@ -161,7 +161,7 @@ def once_joined(
 
 
 def means_of_attractors(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
-    """The long means of motions that go on without repeating, one for all that are on one attractor.
+    """Return the long means of motions that go on without repeating, one for all that are on one attractor.
 
     One that seems on its way elsewhere, but has the mean of one that stays, beats more slowly than it is followed.
     """

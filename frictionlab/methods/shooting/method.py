@@ -55,7 +55,7 @@ CREEPS = (
 
 
 def starts_to_creep(scene: Scene) -> bool:
-    """Whether the mass moves, or its spring pulls, on a belt at rest."""
+    """Check whether the mass moves, or its spring pulls, on a belt at rest."""
     return scene.belt_speed == 0.0 and (scene.start.x != 0.0 or scene.start.velocity != 0.0)
 
 

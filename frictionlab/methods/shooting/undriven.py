@@ -1,4 +1,4 @@
-"""What an undriven mass does in the long run, followed through time: steady sliding, a cycle, or rest.
+"""Motion of an undriven mass in the long run, followed through time: steady sliding, a cycle, or rest.
 
 The motion is followed from ``scene.initial``, from one passage of a level to the next (undriven_path.py), until it
 ends in steady sliding or on a cycle that attracts: the motion must come nearer to it as the derivative there says,
@@ -69,7 +69,7 @@ NOISE = 10.0
 MOST_CENTERED = 20
 """Most moves of the level."""
 STICKING = 1e-2
-"""Of the belt speed: slower slip is called stick."""
+"""Share of the belt speed below which slip is called stick."""
 ACROSS = "friction of so quick a slip may feed a motion across the belt, which is not followed: leave transverse out"
 MOST_TURNS, RESTING, SHRINKING = 5000, 4, 30
 """Turns after which a mass that still swings on a belt at rest is given up; those by which its decay is judged; and
@@ -120,7 +120,7 @@ class Undriven:
 
     @property
     def _accuracy(self) -> float:
-        """Of maps that are to follow the motion no worse than the mean is asked for."""
+        """Return the accuracy of maps that follow the motion no worse than the mean is asked for."""
         asked, of_belt = 0.1 * self.tolerance, abs(self._path.speed) / self._path.mass.normal_load
         if (
             self.law.memory_kind != "scalars" and of_belt > 0.0
@@ -130,13 +130,13 @@ class Undriven:
 
     @property
     def _conserves(self) -> bool:
-        """Whether only friction other than that of sliding takes energy."""
+        """Check whether only friction other than that of sliding takes energy."""
         mass = self._path.mass
         elastic = mass.damping == 0.0 and not mass.bends
         return elastic and self.law.constant_sliding_friction()
 
     def motion(self) -> PeriodicMotion:
-        """The motion reached from the start. Raises NotFound."""
+        """Return the motion reached from the start. Raises NotFound."""
         if self._path.speed == 0.0:
             return self._at_rest()
         section, way = Passages(self._path, self._accuracy, self._conserves), Way()
@@ -152,7 +152,7 @@ class Undriven:
             return motion
 
     def motion_or_why_not(self) -> tuple[PeriodicMotion | str, float]:
-        """The motion, or why none was found, and kernel time [s]."""
+        """Return the motion, or why none was found, and kernel time [s]."""
         try:
             motion: PeriodicMotion | str = self.motion()
         except NotFound as problem:
@@ -160,7 +160,7 @@ class Undriven:
         return motion, self.effort.seconds
 
     def _followed(self, section: Passages, way: Way) -> PeriodicMotion:
-        """Where the motion from the start leads on a moving belt. Raises NotFound."""
+        """Return where the motion from the start leads on a moving belt. Raises NotFound."""
         state, centered = self._path.start, 0
         while True:
             level, found = section.level, section.next(state)
@@ -273,7 +273,7 @@ class Undriven:
     # --- motions that do not repeat ---
 
     def _unrepeated(self, section: Passages, passages: list[Passage]) -> PeriodicMotion | None:
-        """The motion by its long mean, the first quarter left out; None where it is on its way elsewhere still.
+        """Motion by its long mean, the first quarter left out; None where it is on its way elsewhere still.
 
         Raises NotFound where a motion across the belt might grow.
         """
@@ -294,7 +294,7 @@ class Undriven:
         return PeriodicMotion(state, period, found.mean, found.error, math.nan, kind, found, turns)
 
     def _again(self, section: Passages, state: Floats, count: int) -> list[Passage]:
-        """The next passages of a motion by finer maps."""
+        """Return the next passages of a motion by finer maps."""
         finer, found = replace(section, accuracy=section.accuracy / FINER), list[Passage]()
         while len(found) < count and isinstance(end := finer.next(state), Passage):
             found.append(end)
@@ -321,7 +321,7 @@ class Undriven:
                 return PeriodicMotion(state, math.nan, mean, error, math.nan, ModelWord.AT_REST)
 
     def _rested(self, accuracy: float) -> tuple[Floats, float]:
-        """The state in which the motion has died out, but for so much of its way. Raises NotFound."""
+        """Return the state in which the motion has died out, but for so much of its way. Raises NotFound."""
         path, ways = self._path, list[float]()
         state, enough = path.start, 0.1 * self.tolerance * path.mass.normal_load
         for _ in range(MOST_TURNS):
@@ -343,7 +343,7 @@ class Undriven:
         raise NotFound(f"the mass still swings: {path.whereabouts(state)}")
 
     def orbit(self, motion: PeriodicMotion) -> Orbit | None:
-        """The orbit of the motion; of one that stands still, over 2 pi; none of one that takes too many steps."""
+        """Orbit of the motion; of one that stands still, over 2 pi; none of one that takes too many steps."""
         if motion.kind in (ModelWord.AT_REST, ModelWord.SLIDES):
             x = motion.state[0] / math.sqrt(self._path.mass.stiffness)
             return orbit_at_one_place(x, motion.mean, motion.kind == ModelWord.AT_REST)

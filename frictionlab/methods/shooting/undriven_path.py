@@ -42,7 +42,7 @@ from frictionlab.theory.sliding_stability import loses_energy, steady_deflection
 from frictionlab.values.quantities import Floats
 
 TURN = 2.0 * math.pi
-"""The period of the free mass."""
+"""Period of the free mass."""
 FOLLOWED, ROUGH, QUOTIENTS, LEAST = 1e-8, 1e-9, 1e-11, 1e-14
 """Accuracies of maps, per normal load: of those that follow the motion, of those for difference quotients on the way
 and in the end, and the one beyond which rounding decides."""
@@ -60,7 +60,7 @@ PANELS_AT_FIRST, MOST_PANELS = 128, 131072
 
 @dataclass
 class Effort:
-    """What following a motion has taken so far [steps], how far it has led [turns], and kernel time [s]."""
+    """Cost of following a motion so far [steps], its length [turns], and kernel time [s]."""
 
     work: int = 0
     turns: float = 0.0
@@ -96,7 +96,7 @@ class Span(NamedTuple):
 def follow_undriven(
     maps: Maps, belt_speed: float, turns: float, state: Any, accuracy: float, room: int
 ) -> Span:
-    """The motion from a state over so many turns, on a track with so much room at first."""
+    """Return the motion from a state over so many turns, on a track with so much room at first."""
     setting, end, track = Setting(maps, belt_speed, turns), np.empty(state.size), track_of(room)
     image = recorded_map(setting, state, end, accuracy, track)
     # how many panels there are is known once they are written: a full track may lack some
@@ -119,12 +119,12 @@ class UndrivenPath:
 
     @cached_property
     def mass(self) -> Mass:
-        """The numbers of the scene."""
+        """Return the numbers of the scene."""
         return self.scene.mass()
 
     @cached_property
     def speed(self) -> float:
-        """Of the belt, which does not vibrate."""
+        """Speed of the belt, which does not vibrate."""
         return float(interpreted(belt_velocity)(self._body, self.scene.belt_speed, START))
 
     @property
@@ -143,7 +143,7 @@ class UndrivenPath:
 
     @cached_property
     def size(self) -> int:
-        """Of a state."""
+        """Size of a state."""
         return int(interpreted(size_of)(self.law, 0.0))
 
     # --- states ---
@@ -178,12 +178,12 @@ class UndrivenPath:
 
     @cached_property
     def release(self) -> Floats:
-        """Where rest ends, and slip begins."""
+        """Return where rest ends, and slip begins."""
         limit = math.copysign(self.mass.normal_load * friction_at_rest(self.law), self.speed)
         return self._state(interpreted(equilibrium)(self._body, limit, self.speed), self.speed, 0.0)
 
     def held(self, state: Floats) -> tuple[float, float]:
-        """The mean friction of a mass that rests in a state, and by how much it changes with that position."""
+        """Return the mean friction of a mass that rests in a state, and by how much it changes with that position."""
         scale, body = math.sqrt(self.mass.stiffness), self._body
         x, unit = float(state[0]) / scale, 1.0 / self.mass.normal_load
         slope = interpreted(slopes_at)(body, x, 0.0)
@@ -249,7 +249,7 @@ class UndrivenPath:
         return span
 
     def whereabouts(self, state: Floats) -> str:
-        """How far the motion has come."""
+        """Return how far the motion has come."""
         x = state[0] / math.sqrt(self.mass.stiffness)
         return (
             f"after {self.effort.turns:.3g} periods of the free mass it is at x = {x:.6g} "
@@ -492,13 +492,13 @@ COARSEST_CLOSED = 1e-6
 MOST_NEWTON, MOST_DERIVATIVES = 16, 4
 """Steps of Newton's method, and how often derivatives are found anew for them."""
 CHANCE = 0.15
-"""Of the difference between the two coarser means, stands in where the two finer agree by chance."""
+"""Share of the difference between the two coarser means that stands in where the two finer agree by chance."""
 BESIDE_CYCLE = 3.0
 """Distance of a motion to a cycle, over what is left of its way, up to which it may be on its way there."""
 RETURN_DISTANCE = 0.05
-"""How near to its end a motion must come to close a cycle [distances to sliding]."""
+"""Distance to its end at which a motion closes a cycle [distances to sliding]."""
 CONVERGED_DISTANCE, STRONGLY_DISTANCE = 1e-6, 3e-5
-"""How near a motion must come to what attracts it to be there without further proof; and to what halves its distance
+"""Distance to what attracts a motion at which it is there without further proof; and to what halves its distance
 each time, where the steps on the way may leave it farther off."""
 MOST_RETURNS = 8
 """Most passages in one period."""
@@ -526,7 +526,7 @@ class Cycle(NamedTuple):
 
     @property
     def multiplier(self) -> float:
-        """The largest modulus of the multipliers, without the trivial one."""
+        """Return the largest modulus of the multipliers, without the trivial one."""
         return float(largest_modulus(self.matrix[None])[0])
 
     @property

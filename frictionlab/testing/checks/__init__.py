@@ -1,1 +1,1 @@
-"""The checks every law must pass, by subject."""
+"""Checks every law must pass, by subject."""

@@ -47,7 +47,7 @@ def with_memory(law: Any, v: Any, memory: Any, out: Any) -> None:
 
 
 def machine_response(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory) -> tuple[Response, Any]:
-    """What the compiled law answers, and its deflection after the path ``v``."""
+    """Return what the compiled law answers, and its deflection after the path ``v``."""
     kernel = without_memory
     if isinstance(law, BristleLaw):
         kernel = with_an_exact_path if law.exact_path() else with_a_bristle

@@ -39,7 +39,7 @@ SLOW_TO_QUICK = tuple(10.0**exponent for exponent in range(-6, 16))
     seldom="constant_sliding_friction() is false for all parameters drawn",
 )
 def constant_sliding_friction(one: Given) -> None:
-    """Where sliding friction is declared constant it is the same at every speed."""
+    """Sliding friction that is declared constant is the same at every speed."""
     law = one.law(lambda law: law.constant_sliding_friction())
     one.slip()
     slow, quick = (law.sliding_friction(one.draw(name, speeds)) for name in ("speed", "other speed"))
@@ -70,7 +70,7 @@ def steepest_fall(one: Given) -> None:
     seldom="monotone() is false for all parameters drawn",
 )
 def monotone(one: Given) -> None:
-    """Where friction is declared monotone, more slip never meets less friction, rest included."""
+    """Friction that is declared monotone never falls with more slip, rest included."""
     law = one.law_near_the_edge(lambda law: law.monotone())
     v, w = (
         one.planar_slip(),
@@ -176,7 +176,7 @@ def not_smoothed(one: Given) -> None:
     seldom="passive() is false for all parameters drawn",
 )
 def passivity(one: Given) -> None:
-    """Where a law is declared passive, friction takes as much work as its memory stores, however quick the slip."""
+    """Friction that is declared passive takes as much work as its memory stores, however quick the slip."""
     law = one.law_near_the_edge(lambda law: law.passive())
     planar = not no_plane(law) and one.draw("in the plane", st.booleans())
     v = one.planar_slip() if planar else one.slip()
@@ -190,7 +190,7 @@ def passivity(one: Given) -> None:
 
 
 def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) -> tuple[float, float]:
-    """The work lost per time and unit load, and how much of it is rounding."""
+    """Return the work lost per time and unit load, and how much of it is rounding."""
     rates, friction = response(law, v, memory)
     work, own = dot(friction, v), rounding_noise(law, v, memory)
     kept, room = 0.0, 1e-9 * abs(work) + 20.0 * own.friction * abs(v)
@@ -204,7 +204,7 @@ def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) 
 def _slope_of_stored(
     law: BristleLaw | MemoryLaw, memory: tuple[complex, ...], k: int
 ) -> tuple[complex, float]:
-    """The gradient of the stored work with respect to one memory, and what rounding of the whole leaves of it."""
+    """Gradient of the stored work with respect to one memory, and what rounding of the whole leaves of it."""
     step = 1e-4 * (abs(memory[k]) or (deflection_scale(law) if isinstance(law, BristleLaw) else 1.0))
     ways = (1.0, 1j) if isinstance(memory[k], complex) else (1.0,)
     slope = 0.0 * memory[k]
@@ -228,7 +228,7 @@ def _rates_tell_all(law: type[FrictionLaw]) -> str:
     seldom="passive() is true for all parameters drawn",
 )
 def not_passive(one: Given) -> None:
-    """Where a law is declared not passive, some slip gives work that was never stored."""
+    """Friction that is declared not passive gives, by some slip, work that was never stored."""
     law = one.law(lambda law: not law.passive())
     found = any(
         lost < -room
@@ -257,7 +257,7 @@ def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
     seldom="rate_independent() is false for all parameters drawn",
 )
 def rate_independence(one: Given) -> None:
-    """Where friction is declared to know only the path, slip so many times faster moves memory as much faster."""
+    """Memory that is declared to know only the path moves as many times faster as the slip does."""
     law = one.law(lambda law: law.rate_independent())
     planar = not no_plane(law) and one.draw("in the plane", st.booleans())
     v = one.planar_slip() if planar else one.slip()
@@ -275,7 +275,7 @@ def rate_independence(one: Given) -> None:
     seldom="largest_rate() is infinite for all parameters drawn",
 )
 def largest_rate(one: Given) -> None:
-    """The rate of the memory changes no faster with the memory than declared."""
+    """Memory's rate changes no faster with the memory than declared."""
     law = one.law(lambda law: 0.0 < law.largest_rate(1.0) < math.inf)
     v = one.slip()
     declared, smooth = law.largest_rate(abs(v)), False
@@ -300,7 +300,7 @@ def largest_rate(one: Given) -> None:
 def _change_of_rate(
     law: FrictionLaw, v: float, memory: ContactMemory, k: int, step: float
 ) -> tuple[float, float, bool]:
-    """How fast the rate of a memory changes with it, the size of the rates, whether there is a corner."""
+    """Return how fast the rate of a memory changes with it, the size of the rates, whether there is a corner."""
     behind, here, ahead = (
         response(law, v, (*memory[:k], memory[k] + s * step, *memory[k + 1 :])).rates[k] for s in (-1, 0, 1)
     )
@@ -314,7 +314,7 @@ def _change_of_rate(
     seldom="damps_across() is false for all parameters drawn",
 )
 def damps_across(one: Given) -> None:
-    """Where declared, a small motion across the slip only loses energy to friction."""
+    """Small motion across the slip only loses energy to friction where that is declared."""
     law = one.planar_law()
     v, memory = one.slip(), one.memory(law)
     assume(law.damps_across(abs(v)))
@@ -338,7 +338,7 @@ def _lost_across(law: BristleLaw, v: float, z: float, way: tuple[float, float]) 
 
 
 def _worst_across(law: BristleLaw, v: float, z: float) -> tuple[float, float]:
-    """The slip and deflection across that lose least: where the quadratic form of the loss has its minimum."""
+    """Return the slip and deflection across that lose least: where the quadratic form of the loss has its minimum."""
     of_slip, of_deflection, of_both = (_lost_across(law, v, z, way)[0] for way in ((1, 0), (0, 1), (1, 1)))
     mixed = of_both - of_slip - of_deflection
     if of_slip <= 0.0 or of_deflection <= 0.0:

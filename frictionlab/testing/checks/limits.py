@@ -27,7 +27,7 @@ SWING = 10.0
 
 
 def as_stiff(law: FrictionLaw, presliding: float) -> FrictionLaw:
-    """The law in lengths and times so small that its deflection is of this length, and its speeds what they were."""
+    """Law in lengths and times so small that its deflection is of this length, and its speeds what they were."""
     times = _deflection(law) / presliding
     return scaled_law(law, Units(times, times, 1.0))
 
@@ -45,7 +45,7 @@ def _with_deflections(law: FrictionLaw) -> bool:
 
 
 def _settles(law: FrictionLaw) -> bool:
-    """Whether bristles tend to one friction within some of their lengths: not where they near it as a power."""
+    """Check whether bristles tend to one friction within some of their lengths: not where they near it as a power."""
     if not (law.constant_sliding_friction() and _with_deflections(law)):
         return False
     if not isinstance(law, BristleLaw) or not law.exact_path():
@@ -55,7 +55,7 @@ def _settles(law: FrictionLaw) -> bool:
 
 
 def _settles_gently(law: FrictionLaw) -> bool:
-    """The same, and no bristle that bends over resists by its damping more than it does when it has."""
+    """Return the same, and no bristle that bends over resists by its damping more than it does when it has."""
     if not _settles(law):
         return False
     bending = law.friction(SWING, 0.0, law.rate(SWING, 0.0)) if isinstance(law, BristleLaw) else 0.0
@@ -97,7 +97,7 @@ def coulomb_limit_of_prescribed_slip(one: Given) -> None:
     seldom=NOT_CONSTANT,
 )
 def coulomb_limit_of_a_body(one: Given) -> None:
-    """The mean friction of a body driven above resonance nears Coulomb's as one over the root of stiffness."""
+    """Mean friction of a body driven above resonance nears Coulomb's as one over the root of stiffness."""
     law = one.law(_settles_gently)  # else it nears Coulomb friction as one over stiffness first
     mu = law.sliding_friction(1.0)
     scene = _body(friction=4.0, mu=mu, belt_speed=15.0, frequency=1.5)

@@ -19,7 +19,7 @@ NO_EXACT_PATH = "exact_path() is false for all parameters drawn"
 FURTHEST = 1e12
 """Deflection [scene length] beyond which bristles have no bound."""
 STEPS = 400
-"""Of the Runge-Kutta method, along a path of a few largest deflections."""
+"""Steps of the Runge-Kutta method, along a path of a few largest deflections."""
 
 
 @law_check(
@@ -59,7 +59,7 @@ def _steady_friction(one: Given, law: BristleLaw, speed: float) -> tuple[float, 
 
 
 def _slowed_to(one: Given, law: BristleLaw, speed: float, share: float) -> float:
-    """The least deflection at which its rate is no more than a share of the slip."""
+    """Return the least deflection at which its rate is no more than a share of the slip."""
     low, high = 0.0, 1.5 * deflection_scale(law)
     bounded = law.largest_deflection() < math.inf
     while not bounded and law.rate(speed, high) > 1e-12 * speed and high < FURTHEST:
@@ -105,7 +105,7 @@ def _start_and_path(one: Given, law: BristleLaw, planar: bool) -> tuple[Any, Any
 
 
 def _integrated(law: BristleLaw, z: Any, path: Any) -> Any:
-    """The deflection after the path at unit speed, by the classical Runge-Kutta method."""
+    """Return the deflection after the path at unit speed, by the classical Runge-Kutta method."""
     v, h = path / abs(path), abs(path) / STEPS
     for _ in range(STEPS):
         a = law.rate(v, z)
@@ -116,7 +116,7 @@ def _integrated(law: BristleLaw, z: Any, path: Any) -> Any:
 
 
 def _room(law: BristleLaw, path: Any) -> float:
-    """What steps may be wrong by: fourth order where rates are smooth, a step's length where they jump."""
+    """Return what steps may be wrong by: fourth order where rates are smooth, a step's length where they jump."""
     if law.yield_deflection() < math.inf:
         return 2.0 * abs(path) / STEPS
     step = min(1.0, law.largest_rate(1.0) * abs(path) / STEPS)
@@ -199,7 +199,7 @@ def elastic_deflection(one: Given) -> None:
     seldom="elastic_unloading() is false for all parameters drawn",
 )
 def elastic_unloading(one: Given) -> None:
-    """Where unloading is declared elastic, a deflection that slip makes smaller moves with it."""
+    """Deflections that slip makes smaller move with it where unloading is declared elastic."""
     law = one.law(lambda law: law.elastic_unloading())
     v = one.slip()
     for share in (one.draw("share", sizes(1e-6, 1.0)), 0.9, 1.0):
@@ -247,7 +247,7 @@ def breakaway(one: Given) -> None:
     seldom="count() is 1 for all parameters drawn",
 )
 def uncoupled(one: Given) -> None:
-    """The rate of each number depends on slip and on that number alone: steps are solved number by number."""
+    """Rates depend on slip and on that number alone: steps are solved number by number."""
     law = one.law(lambda law: law.count() > 1)
     v, memory = one.slip(), one.memory(law)
     rates = response(law, v, memory).rates
@@ -259,14 +259,14 @@ def uncoupled(one: Given) -> None:
 
 
 def _yield_surfaces(law: FrictionLaw) -> list[float]:
-    """The radius of each deflection's yield surface; none for laws that have none in the plane."""
+    """Return the radius of each deflection's yield surface; none for laws that have none in the plane."""
     if isinstance(law, MemoryLaw):
         return [law.yield_deflection(k) for k in range(law.count())] if law.turning else []
     return [law.yield_deflection()] if isinstance(law, BristleLaw) and not law.no_vector_form() else []
 
 
 def _own_rate(law: Any, v: complex, memory: list[complex], k: int) -> Any:
-    """The rate of one deflection, whatever form a bristle law takes in the plane."""
+    """Return the rate of one deflection, whatever form a bristle law takes in the plane."""
     return law.rate(v, memory, k) if isinstance(law, MemoryLaw) else law.rate(v, memory[k])
 
 

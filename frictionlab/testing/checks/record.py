@@ -44,7 +44,7 @@ def _leads_to(name: str, law: type[FrictionLaw]) -> bool:
     share=0.0,
 )
 def loads_by_name(one: Given) -> None:
-    """The law is found by its name, and can be listed."""
+    """Laws are found by their names, and can be listed."""
     one.require(
         law_record("law", one.kind)["class"].endswith(one.kind.__qualname__), "listed as another class"
     )
@@ -55,7 +55,7 @@ def loads_by_name(one: Given) -> None:
     share=0.0,
 )
 def documented(one: Given) -> None:
-    """The docstring names a source with its year, and every parameter with its unit in brackets."""
+    """Docstring names a source with its year, and every parameter with its unit in brackets."""
     record = law_record("law", one.kind)
     text = record["description"]
     one.require(bool(YEAR.search(text)), "the docstring names no source: write Sources: Author (year)")
@@ -111,7 +111,7 @@ def limits_kept(one: Given) -> None:
 
 @law_check(change="change the default, or the bound of the parameter", share=0.1)
 def defaults_valid(one: Given) -> None:
-    """What a parameter is where it is left out lies within the law's own limits."""
+    """Defaults of parameters lie within the law's own limits."""
     given = one.law().model_dump(exclude_none=True)
     for name, field in one.kind.model_fields.items():
         default = None if field.is_required() else field.get_default(call_default_factory=True)
@@ -206,7 +206,7 @@ def _friction_alone(law: Any, v: float, memory: ContactMemory, rates: ContactMem
     share=0.2,
 )
 def instances_apart(one: Given) -> None:
-    """What one law is asked changes nothing for another of the same parameters."""
+    """Calls of one law change nothing for another of the same parameters."""
     law = one.law()
     v = one.slip()
     memory = one.memory(law)
@@ -246,7 +246,7 @@ def parameters_matter(one: Given) -> None:
 
 
 def _with_another(name: str, law: FrictionLaw) -> Iterator[FrictionLaw]:
-    """The law with another value of one parameter, where it has one and that makes a law."""
+    """Yield the law with another value of one parameter, where it has one and that makes a law."""
     value = getattr(law, name)
     for change in _changes(value, words(type(law), name)):
         if change != value:
@@ -267,7 +267,7 @@ def _changes(value: Any, words: Sequence[str]) -> Sequence[Any]:
 
 
 def _apart(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
-    """Whether answers differ by more than rounding."""
+    """Check whether answers differ by more than rounding."""
     if len(one) != len(other):
         return True
     return any(
@@ -284,7 +284,7 @@ def _differ_in_the_plane(law: FrictionLaw, other: FrictionLaw, v: complex, memor
 
 
 def asked(law: FrictionLaw, v: float, memory: ContactMemory) -> tuple[Any, ...]:
-    """What a law says about one slip velocity, by every method that has an answer."""
+    """Return what a law says about one slip velocity, by every method that has an answer."""
     if isinstance(law, MemoryLaw):  # another law may remember more, or less
         memory = tuple(memory[k] if k < len(memory) else law.steady(v, k) for k in range(law.count()))
     exact = isinstance(law, BristleLaw) and law.exact_path()

@@ -96,6 +96,7 @@ def shakedown_of_body(law: BristleLaw, value: Value, along: complex, across: com
 
 
 _ROUNDING = 1e-14
+_SAMPLED = 1e-10  # of a largest force, from a parabola through neighbours
 _SAME = 1e-9  # relative spread of equal numbers with rounding errors
 
 
@@ -213,7 +214,7 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
         return _bristle_start(rows, loads.shakedown, loads.prescribed)
     if loads.start == loads.start:
         steady = float(np.nanmax(np.abs(rows.steady), initial=0.0))
-        return Estimate(loads.start, _ROUNDING * max(abs(loads.start), steady))
+        return Estimate(loads.start, _SAMPLED * max(abs(loads.start), steady) if loads.start else 0.0)
     if loads.prescribed:
         return Estimate(0.0, 0.0)
     if loads.along == 0 == loads.across:

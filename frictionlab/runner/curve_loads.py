@@ -23,7 +23,7 @@ from frictionlab.scene.waveforms import told
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.theory.piecewise import piecewise
 from frictionlab.theory.prescribed import mean_direction
-from frictionlab.theory.rest import can_hold
+from frictionlab.theory.rest import can_hold, resting_range
 from frictionlab.values.quantities import Floats
 
 _ADDED = "body", "belt_vibration", "normal_load_variation"
@@ -36,7 +36,10 @@ ONE_SIDED = "friction is not the same to both sides: its limit at vanishing belt
 JUMPS = (
     "friction jumps at the end of reversal, where slip rests for a part of the period: it has no shape there"
 )
-STICKS = "the body sticks to a belt of vanishing speed: the start of its curve is known for one sine along the belt"
+STICKS = (
+    "the body sticks to a belt of vanishing speed: the start of its curve is known for constant friction, linear "
+    "springs and loads along the belt"
+)
 STICKS_ELASTICALLY = (
     "the body may stick elastically to a slow belt: the start of its curve is known for sines on a belt of steady "
     "speed"
@@ -96,13 +99,20 @@ def start_is_known(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
-    """Mean friction at vanishing belt speed, or why it is not known; zero where both directions are alike."""
+    """Return the mean friction at vanishing belt speed, or why it is not known; zero if both directions are alike.
+
+    A body that the belt can hold at rest has there the largest mean friction at which it does not slip.
+    """
     remembers = law is not None and law.memory_kind != "none"
     prescribed = scene.degrees_of_freedom == 0
     if prescribed and not remembers and _rests_at_its_largest(scene):
         return math.nan, JUMPS
     if law is not None and not law.obeys("oddness"):
         return math.nan, ONE_SIDED
+    if not prescribed and not remembers and law is not None and (most := resting_range(scene, law)) > -math.inf:
+        # the belt carries the body until friction just gives way at the peak of the load
+        constant = law.constant_sliding_friction() and law.monotone() and not scene.body_terms
+        return (most, "") if constant and scene.load_along_belt_only else (math.nan, STICKS)
     if not repeats_mirrored(scene):
         along = prescribed and scene.load_along_belt_only
         if along and law is not None and not remembers and law.constant_sliding_friction():
@@ -110,9 +120,7 @@ def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
         return math.nan, LOPSIDED
     if law is not None and (law.memory_kind == "deflections" or law.elastic_deflection() > 0.0):
         return math.nan, STICKS_ELASTICALLY
-    if not prescribed and not remembers and (law is None or can_hold(scene, law)):
-        return math.nan, STICKS
-    return 0.0, ""
+    return (math.nan, STICKS) if law is None and not prescribed else (0.0, "")
 
 
 def _rests_at_its_largest(scene: Scene) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import Any
 
@@ -93,11 +94,48 @@ def test_a_square_slip_has_an_end_of_reversal_and_no_shape() -> None:
 def test_what_is_not_known_of_a_curve_is_empty_with_the_reason() -> None:
     lopsided = mass(drive={"unbalance": 10.0, "frequency": 1.0, "waveform": "sawtooth"})
     held = mass(drive={"amplitude": 0.2, "frequency": 1.0, "waveform": "square"})
-    for one, reason in ((lopsided, "mirrored"), (held, "sticks")):
-        found = row(one, speeds=friction_free_velocity(one) * np.linspace(0.05, 1.2, 12))
+    falling = fl.Stribeck(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=0.1)
+    for one, law, reason in ((lopsided, LAW, "mirrored"), (held, falling, "sticks")):
+        found = row(one, law, speeds=friction_free_velocity(one) * np.linspace(0.05, 3.0, 30))
         assert reason in found["reason"]
         assert np.isnan(found["shape_area"])
-        assert found["reversal_end"] == pytest.approx(friction_free_velocity(one), rel=1e-12)
+        assert law is falling or found["reversal_end"] == pytest.approx(
+            friction_free_velocity(one), rel=1e-12
+        )
+
+
+def test_a_belt_that_shakes_the_body_gives_the_curve_of_the_equal_load() -> None:
+    omega, shaken = 1.5, cmath.rect(0.7, 0.3)
+    force = (
+        (1 - omega**2 + 0.2j * omega) * shaken * 1j / omega
+    )  # spring, dashpot and inertia at the belt's motion
+    size, turn = abs(force), math.degrees(cmath.phase(force))
+    load = mass(normal_load=3.0, drive={"amplitude": size, "frequency": omega, "phase": turn})
+    belt = mass(
+        normal_load=3.0,
+        belt_vibration={"velocity_amplitude": 0.7, "frequency": omega, "phase": math.degrees(0.3)},
+    )
+    speeds = friction_free_velocity(load) * np.geomspace(0.01, 1.2, 40)
+    one, other = row(load, speeds=speeds), row(belt, speeds=speeds)
+
+    assert one["shape_start"] == pytest.approx(0.4 - size / 3.0, abs=1e-12)
+    for name in ("reversal_end", "shape_start", "shape_area", "shape_half"):
+        room = one[f"{name}_error"] + other[f"{name}_error"] + 1e-8
+        assert one[name] == pytest.approx(other[name], abs=room), name
+    assert one["shape"] == other["shape"]
+
+
+def test_a_body_held_at_rest_starts_at_the_largest_friction_without_slip() -> None:
+    """Slow belts leave less and less beside it, where the load is long at its peak as much as they are slow."""
+    one = mass(
+        normal_load=3.0, drive={"amplitude": 0.5, "frequency": 0.6, "waveform": {"square": {"duty": 0.3}}}
+    )
+    found = row(one, speeds=friction_free_velocity(one) * np.geomspace(1e-4, 1.2, 40))
+    slow = fl.curve(one, LAW, [1e-5, 1e-4])["mean_friction"] - found["shape_start"]
+
+    assert (slow > 0.0).all()
+    assert slow[1] < 1e-4
+    assert slow[0] == pytest.approx(0.1 * slow[1], rel=0.02)
 
 
 def test_what_repeats_mirrored() -> None:

@@ -26,6 +26,7 @@ from frictionlab.values.notes import (
     text_of,
     value_text,
 )
+from frictionlab.values.units import in_si_whatever
 
 KEY = "plugins"
 
@@ -147,10 +148,20 @@ def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
         laws = tree.get("laws")
         given = [law for law in laws if isinstance(law, dict)] if isinstance(laws, list) else []
         kinds = {str(law.get("kind")): law for law in given if law.get("kind") in codes}
+        for law in given:
+            if law.get("kind") in kinds:
+                law |= {key: _number(value) for key, value in law.items() if key not in ("kind", "label")}
         own = {kind: _stand_in(kind, given, files) for kind in kinds}
         return StudyLaws(files, registry.Laws(own), codes)
 
     return bring
+
+
+def _number(value: Any) -> Any:
+    """Return a text with a unit as a number in SI units, several one by one; anything else as it is."""
+    if isinstance(value, list):
+        return [_number(each) for each in value]
+    return in_si_whatever(value) if isinstance(value, str) else value
 
 
 def _saved_file(path: FilePath) -> LawFile:

@@ -133,6 +133,23 @@ def number_before_unit(text: str) -> float | str:
     return float(Fraction(read["number"])) if read else text
 
 
+def in_si_whatever(text: str) -> float | str:
+    """Return the number of a text in SI units, whatever it is of; the text if it has none or an unknown unit."""
+    import pint
+
+    if not (read := _TEXT.fullmatch(text)):
+        return text
+    try:
+        powers = {str(name)[1:-1]: int(power) for name, power in _parsed(read["unit"]).dimensionality.items()}
+    except pint.UndefinedUnitError:
+        return text
+    found = in_units(text, " ".join(f"{_SI[name]}^{power}" for name, power in powers.items()))
+    return text if isinstance(found, Unfit) else found
+
+
+_SI = {"mass": "kg", "length": "m", "time": "s", "angle": "rad"}
+
+
 def in_units_of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:
     """Number of a text for a parameter of a law; of one that is not per unit normal load, where that belongs.
 

@@ -206,6 +206,23 @@ def test_a_report_needs_no_law_and_runs_no_code_of_the_folder() -> None:
     assert cli.main(["plot", "out"]) == 0
 
 
+def test_a_saved_run_of_a_law_with_units_is_that_of_its_study() -> None:
+    slip = {"velocity_amplitude": "2 mm/s", "frequency": "1 Hz"}
+    path = study(
+        law=LAW.replace("mu: Positive", "mu: Positive\n    pace: fl.Speed"),
+        scene={"dimensional": {"slip": slip, "belt_speed": "1 mm/s"}},
+        laws=[{"kind": "my-law", "mu": "40 %", "pace": "5 mm/s"}],
+        sweep={
+            "scene.dimensional.belt_speed": ["0.5 mm/s", "1 mm/s"],
+            "laws.my-law.pace": ["5 mm/s", "1 um/s"],
+        },
+    )
+    done = fl.run(path, out="out")
+
+    assert cli.main(["plot", "out"]) == cli.main(["report", "out"]) == 0
+    assert fl.load("out").study.digest() == done.study.digest()
+
+
 @pytest.mark.parametrize(
     ("listed", "words"),
     [

@@ -109,7 +109,12 @@ def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
         return math.nan, JUMPS
     if law is not None and not law.obeys("oddness"):
         return math.nan, ONE_SIDED
-    if not prescribed and not remembers and law is not None and (most := resting_range(scene, law)) > -math.inf:
+    if (
+        not prescribed
+        and not remembers
+        and law is not None
+        and (most := resting_range(scene, law)) > -math.inf
+    ):
         # the belt carries the body until friction just gives way at the peak of the load
         constant = law.constant_sliding_friction() and law.monotone() and not scene.body_terms
         return (most, "") if constant and scene.load_along_belt_only else (math.nan, STICKS)

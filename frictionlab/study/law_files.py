@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path as FilePath
 from types import MappingProxyType
-from typing import Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import create_model
 
@@ -26,7 +26,7 @@ from frictionlab.values.notes import (
     text_of,
     value_text,
 )
-from frictionlab.values.units import in_si_whatever
+from frictionlab.values.units import dimension_of
 
 KEY = "plugins"
 
@@ -148,20 +148,10 @@ def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
         laws = tree.get("laws")
         given = [law for law in laws if isinstance(law, dict)] if isinstance(laws, list) else []
         kinds = {str(law.get("kind")): law for law in given if law.get("kind") in codes}
-        for law in given:
-            if law.get("kind") in kinds:
-                law |= {key: _number(value) for key, value in law.items() if key not in ("kind", "label")}
         own = {kind: _stand_in(kind, given, files) for kind in kinds}
         return StudyLaws(files, registry.Laws(own), codes)
 
     return bring
-
-
-def _number(value: Any) -> Any:
-    """Return a text with a unit as a number in SI units, several one by one; anything else as it is."""
-    if isinstance(value, list):
-        return [_number(each) for each in value]
-    return in_si_whatever(value) if isinstance(value, str) else value
 
 
 def _saved_file(path: FilePath) -> LawFile:
@@ -175,7 +165,7 @@ def _stand_in(kind: str, given: list[dict[str, Any]], files: tuple[LawFile, ...]
     """A law class with every parameter that a law of this kind has in the study."""
     values = {key: value for law in given if law["kind"] == kind for key, value in law.items()}
     fields: dict[str, Any] = {
-        key: ((float | None) if isinstance(value, int | float) else Any, None)
+        key: (_kind_of(value), None)
         for key, value in values.items()
         if str(key).isidentifier() and key not in ("kind", "label")
     }
@@ -183,6 +173,14 @@ def _stand_in(kind: str, given: list[dict[str, Any]], files: tuple[LawFile, ...]
     made = create_model(kind, __base__=SavedLaw, __doc__=docstring, **fields)
     made.bibtex = bibtex
     return made
+
+
+def _kind_of(value: Any) -> Any:
+    """Return the type of a parameter that has this value, with the dimension of its unit."""
+    unit = dimension_of(value[0] if isinstance(value, list) and value else value)
+    number = isinstance(value, int | float) or (isinstance(value, str) and unit is not None)
+    kind = float | None if number else Any
+    return kind if unit is None else Annotated[kind, unit]
 
 
 def _told_of_law(kind: str, files: tuple[LawFile, ...]) -> tuple[str, str]:

@@ -133,21 +133,18 @@ def number_before_unit(text: str) -> float | str:
     return float(Fraction(read["number"])) if read else text
 
 
-def in_si_whatever(text: str) -> float | str:
-    """Return the number of a text in SI units, whatever it is of; the text if it has none or an unknown unit."""
+def dimension_of(text: Any) -> Dimension | None:
+    """Return the dimension of a text with a unit; None of anything else, and of an unknown unit."""
     import pint
 
-    if not (read := _TEXT.fullmatch(text)):
-        return text
+    if not isinstance(text, str) or not (read := _TEXT.fullmatch(text)):
+        return None
     try:
         powers = {str(name)[1:-1]: int(power) for name, power in _parsed(read["unit"]).dimensionality.items()}
     except pint.UndefinedUnitError:
-        return text
-    found = in_units(text, " ".join(f"{_SI[name]}^{power}" for name, power in powers.items()))
-    return text if isinstance(found, Unfit) else found
-
-
-_SI = {"mass": "kg", "length": "m", "time": "s", "angle": "rad"}
+        return None
+    force, length, time = (powers.get(name, 0) for name in ("mass", "length", "time"))
+    return Dimension(force, length - force, time + 2 * force)
 
 
 def in_units_of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:

@@ -23,15 +23,15 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from frictionlab.charts.sheet import CYCLE, PAGE, STYLE, Heading, Sheet, blank_figure, write_figure
-from frictionlab.values.columns import word
+from frictionlab.values.columns import BELT_SPEEDS, SHOWN_IN, word
 from frictionlab.values.printable import printable
+from frictionlab.values.units import handy_unit
 
 POINTS_SHOWN = 1000
 """Points of a path of slip in the first picture: some of its middle, one after the other."""
 MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
 LAGS = 200
 FEW_TICKS = 5
-"""Ticks along belt speeds in m/s, whose numbers are long."""
 
 
 def fit_figure(found: Any, title: str = "") -> Figure:
@@ -60,13 +60,22 @@ def draw_fit(found: Any, title: str, folder: Path) -> list[Path]:
 def _draw_measured(axes: Axes, found: Any, looks: list[Any]) -> None:
     """Mean friction against belt speed, a line for each law and scene."""
     measured = found.measured
-    speeds = measured.table[measured.along].to_numpy(dtype=float)
+    speeds, label = _along(measured)
     axes.errorbar(speeds, measured.values, yerr=measured.sigma, elinewidth=0.7, zorder=1, **MEASURED)
     for each, look in zip(found.fitted, looks, strict=True):
         for places in measured.scenes_rising:
             axes.plot(speeds[places], each.said[places], **look)
-    axes.set(xlabel=word(measured.speed), ylabel=word("mean_friction"))
+    axes.set(xlabel=label, ylabel=word("mean_friction"))
     axes.xaxis.set_major_locator(MaxNLocator(FEW_TICKS))
+
+
+def _along(measured: Any) -> tuple[Any, str]:
+    """Return times or belt speeds, in a unit of a handy size, and what the axis says."""
+    along = measured.table[measured.along].to_numpy(dtype=float)
+    if measured.is_path or measured.speed != BELT_SPEEDS[1]:
+        return along, "time" if measured.is_path else word(measured.speed)
+    unit = handy_unit("m/s", float(np.abs(along).max()))
+    return along / unit.size, word(f"{measured.speed}{SHOWN_IN}{unit.unit}")
 
 
 def _draw_loops(axes: Axes, found: Any, looks: list[Any]) -> None:
@@ -88,17 +97,14 @@ def _shown(rows: int) -> slice:
 def _draw_left(axes: Axes, found: Any, looks: list[Any]) -> None:
     """Fitted less measured, a line for each law and scene; of a path that part which the first picture shows."""
     measured = found.measured
-    along = measured.table[measured.along].to_numpy(dtype=float)
+    along, label = _along(measured)
     parts = [np.arange(len(along))[_shown(len(along))]] if measured.is_path else measured.scenes_rising
     marks = {"linewidth": 0.5} if measured.is_path else {"marker": ".", "markersize": 3.0, "linewidth": 0.6}
     for each, look in zip(found.fitted, looks, strict=True):
         for places in parts:
             axes.plot(along[places], each.raw[places], **look | marks)
     axes.axhline(0.0, color="0.5", linewidth=0.7)
-    axes.set(
-        xlabel="time" if measured.is_path else word(measured.speed),
-        ylabel="fitted less measured",
-    )
+    axes.set(xlabel=label, ylabel="fitted less measured")
     axes.xaxis.set_major_locator(MaxNLocator(FEW_TICKS))
 
 

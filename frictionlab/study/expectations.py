@@ -39,9 +39,9 @@ def _two(labels: Any) -> Any:
     return labels
 
 
-_Text = WrapValidator(_or_text)
+OrText = WrapValidator(_or_text)
 _WITH_UNIT: dict[str, Any] = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]"}
-_Number = WithJsonSchema({"anyOf": [{"type": "number"}, _WITH_UNIT]})
+NumberSchema = WithJsonSchema({"anyOf": [{"type": "number"}, _WITH_UNIT]})
 _COMPARABLE = [
     name for name in (*columns.RESULTS, *columns.SI, *columns.CURVE_MEASURES) if name not in columns.TEXT
 ]
@@ -79,10 +79,10 @@ class Expectation(Record):
     minus: dict[str, Any] | None = None
     over: dict[str, Any] | None = None
     column: Annotated[str, WithJsonSchema({"enum": _COMPARABLE})] | None = None
-    equals: Annotated[Finite, _Text, _Number] | None = None
-    below: Annotated[Finite, _Text, _Number] | None = None
-    above: Annotated[Finite, _Text, _Number] | None = None
-    within: Annotated[Positive, _Text, _Number] | None = None
+    equals: Annotated[Finite, OrText, NumberSchema] | None = None
+    below: Annotated[Finite, OrText, NumberSchema] | None = None
+    above: Annotated[Finite, OrText, NumberSchema] | None = None
+    within: Annotated[Positive, OrText, NumberSchema] | None = None
     status: Literal["ok", "refused", "failed", "not_unique"] | None = None
     max_difference: Annotated[tuple[str, str], BeforeValidator(_two)] | None = None
     shape: Literal["concave", "convex", "mixed", "undecided"] | None = None

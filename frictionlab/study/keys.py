@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
-from frictionlab.laws.base import Finite, Positive, Record
-from frictionlab.study.expectations import Expectation
+from frictionlab.laws.base import Finite, FrictionLaw, Positive, Record
+from frictionlab.scene.dimensional import unit_of
+from frictionlab.study.expectations import Expectation, NumberSchema, OrText
 from frictionlab.study.figure_options import FigureOptions
+from frictionlab.study.written import column_of, number_of
 from frictionlab.values import columns
-from frictionlab.values.notes import number_text
+from frictionlab.values.notes import value_text
+from frictionlab.values.validation import checked_value
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance", "sweep"),
     *("keep", "columns", "limit", "figures", "boundaries", "data", "free", "expect"),
 )
 """Keys of a study file, in the order in which it is written."""
+MEASURED = {
+    "belt_speed": ("belt_speed_m_per_s", "m/s"),
+    "mean_friction": ("mean_friction_N", "N"),
+    "sigma": ("sigma_N", "N"),
+}
+"""Columns of measurements that may have units, each with that in SI units and its unit."""
 KINDS_OF_FILE = ".csv", ".tsv", ".txt", ".parquet"
 """Ends of names; those of text may be followed by .gz."""
 SLIP_ALONE: dict[str, Any] = {"belt_speed": 1, "slip": {"velocity_amplitude": 1, "frequency": 1}}
@@ -72,10 +82,12 @@ class DataFiles(Record):
 
     file: a file, or a list of files, .csv, .tsv or .parquet, from the study's folder; text may be .gz
     columns: how the files call our columns, such as {belt_speed: v, mean_friction: mu_bar}
+    units: of our columns, of a scene in SI units, such as {belt_speed: mm/s, mean_friction: N}
     """
 
     file: Annotated[tuple[Annotated[str, AfterValidator(_is_measured)], ...], _Alone[0], _Alone[1]]
     columns: dict[str, str] = Field(default_factory=dict)
+    units: dict[str, str] = Field(default_factory=dict)
 
     def resolved(self) -> dict[str, Any]:
         """Return the entry of a study file."""
@@ -91,8 +103,8 @@ class FreeRange(Record):
     spacing: how the search is spread over the range; log where left out and the ends are a hundredfold apart
     """
 
-    low: Finite = Field(alias="from")
-    high: Finite = Field(alias="to")
+    low: Annotated[Finite, OrText, NumberSchema] = Field(alias="from")
+    high: Annotated[Finite, OrText, NumberSchema] = Field(alias="to")
     spacing: Literal["linear", "log"] | None = None
 
     @model_validator(mode="before")
@@ -106,7 +118,9 @@ class FreeRange(Record):
 
     @model_validator(mode="after")
     def _rises(self) -> Self:
-        low, high = number_text(self.low), number_text(self.high)
+        if isinstance(self.low, str) or isinstance(self.high, str):
+            return self  # until it is known which unit they must have
+        low, high = value_text(self.low), value_text(self.high)
         if self.low >= self.high:
             raise ValueError(f"must rise, got {low} to {high}")
         if self.spacing == "log" and self.low <= 0.0:
@@ -155,6 +169,29 @@ class StudyKeys(Record):
         if self.free is not None and self.data is None:
             raise ValueError("free: needs data: the measurements that numbers are fitted to")
         return self
+
+
+def column_in_si(name: str) -> tuple[str, str]:
+    """Return the column in SI units of a measured one, and its unit. Raises ValueError for one without a unit."""
+    if name in MEASURED:
+        return MEASURED[name]
+    field = column_of(name)
+    unit = unit_of(field.rpartition(".")[2]) if name.startswith("scene.dimensional.") else None
+    if unit is None:
+        raise ValueError(f"has no unit; {', '.join(MEASURED)} and scene.dimensional.<path> may have one")
+    return field, unit
+
+
+def range_in_numbers(
+    name: str, given: FreeRange, laws: Iterable[type[FrictionLaw]], in_si: bool
+) -> tuple[FreeRange | None, str | None]:
+    """Return the range of a number with texts as numbers, and what is wrong with it; None if nothing is."""
+    ends = {
+        end: number_of(name, value, laws, in_si) for end, value in (("from", given.low), ("to", given.high))
+    }
+    spacing = {"spacing": given.spacing} if given.spacing else {}
+    read, what, _ = checked_value(StudyKeys, "free", {name: ends | spacing})
+    return (None if read is None else read[name]), what
 
 
 NOT_KEPT, USUAL_LIMIT = Keep(), Limit()

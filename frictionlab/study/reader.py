@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import SPRING
 from frictionlab.study import registry
@@ -29,7 +30,16 @@ from frictionlab.study.axes import (
 from frictionlab.study.expectations import Table, of_table, result_column
 from frictionlab.study.figure_options import check_against, check_boundaries
 from frictionlab.study.grid import StudyGrid, grid_size
-from frictionlab.study.keys import SLIP_ALONE, STUDY_KEYS, Keep, StudyKeys
+from frictionlab.study.keys import (
+    SLIP_ALONE,
+    STUDY_KEYS,
+    DataFiles,
+    FreeRange,
+    Keep,
+    StudyKeys,
+    column_in_si,
+    range_in_numbers,
+)
 from frictionlab.study.law_files import LawReader, StudyLaws, read_laws
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.parts import (
@@ -46,8 +56,9 @@ from frictionlab.study.sweeps import Sweeps, read_sweeps
 from frictionlab.study.written import column_of, read_law_numbers, scene_is_in_si, units_of_law
 from frictionlab.study.yaml_source import Source
 from frictionlab.values import columns
-from frictionlab.values.notes import KeyPath, Notes, StudyError, did_you_mean, number_text
+from frictionlab.values.notes import KeyPath, Notes, StudyError, Unfit, did_you_mean, number_text
 from frictionlab.values.quantities import dimensions
+from frictionlab.values.units import in_units
 from frictionlab.values.validation import build_record, number_paths
 
 LARGEST_GRID = 100_000_000
@@ -275,9 +286,35 @@ class _StudyReader:
         files = keys.data.file if keys.data is not None else ()
         for index, name in enumerate(files):
             self._check_file(name, ("data", "file", *([index] if len(files) > 1 else [])))
+        self._check_units(keys.data)
+        classes, in_si = [choice.law_class for choice in laws], scene.dimensional is not None
+        free = {name: self._range(name, each, classes, in_si) for name, each in (keys.free or {}).items()}
         expect = [of_table(each, ("expect", k), table, notes) for k, each in enumerate(keys.expect)]
         may_be_free = scene.is_free or any(path.endswith((".spring", SPRING[0])) for path in sweep.sweep)
-        return {"expect": tuple(expect), "columns": self._columns(keys.columns, table, may_be_free)}
+        columns = self._columns(keys.columns, table, may_be_free)
+        return {"expect": tuple(expect), "columns": columns, "free": free or None}
+
+    def _check_units(self, given: DataFiles | None) -> None:
+        """Note units of measurements that are none, or of what has none."""
+        for name, unit in (given.units if given is not None else {}).items():
+            if not scene_is_in_si(self._tree):
+                self._notes.on_key(("data", "units"), "go with a scene in SI units: scene.dimensional")
+                continue
+            try:
+                read = in_units(f"1 {unit}", column_in_si(name)[1])
+                wrong = read.what if isinstance(read, Unfit) else ""
+            except ValueError as problem:
+                wrong = str(problem)
+            if wrong:
+                self._notes.add(("data", "units", name), wrong)
+
+    def _range(
+        self, name: str, given: FreeRange, classes: list[type[FrictionLaw]], in_si: bool
+    ) -> FreeRange | None:
+        found, wrong = range_in_numbers(name, given, classes, in_si)
+        if wrong:
+            self._notes.add(("free", name), wrong)
+        return found
 
     def _check_file(self, name: str, path: KeyPath) -> None:
         """Note a file of measurements that is not there."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from pydantic import BaseModel
@@ -22,7 +22,7 @@ from frictionlab.values.notes import Unfit
 from frictionlab.values.printable import printable
 from frictionlab.values.quantities import Written, dimensions
 from frictionlab.values.units import in_units_of_law, unit_of_dimension
-from frictionlab.values.validation import field_path, number_paths
+from frictionlab.values.validation import field_path, number_paths, record_at
 
 
 def column_of(path: str) -> str:
@@ -52,6 +52,19 @@ def number_written(record: type[BaseModel], key: str, name: str, value: Any) -> 
     if isinstance(value, list):
         return [number_written(record, key, name, each) for each in value]
     return in_units_of_law(value, name, units) if isinstance(value, str) else value
+
+
+def number_of(name: str, value: Any, laws: Iterable[type[FrictionLaw]], in_units_of_si: bool) -> Any:
+    """Return a number of a law by name, or of a scene by path, that may be written as text with a unit."""
+    if not isinstance(value, str):
+        return value
+    key = name.rpartition(".")[2].partition("[")[0]
+    *steps, field = column_of(name).removeprefix(SCENE).split(".")
+    owner = next((law for law in laws if key in law.model_fields), None)
+    record = record_at(Scene, tuple(steps)) if name.startswith(SCENE) else owner
+    if not in_units_of_si or record is None:
+        return Unfit(value, "must be a number")
+    return number_written(record, key, field if name.startswith(SCENE) else key, value)
 
 
 def read_law_numbers(tree: Mapping[str, Any], laws: registry.Laws) -> None:

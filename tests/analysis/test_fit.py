@@ -18,6 +18,8 @@ from frictionlab import cli
 from frictionlab.analysis.fit.errors import correlation_length
 from frictionlab.analysis.fit.measured import WrongData, given_measurements
 from frictionlab.analysis.fit.result import PARTS_OF_A_FIT, FittedLaw
+from frictionlab.study.load import parse_study
+from frictionlab.values.notes import StudyError
 
 SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 SPEEDS = np.linspace(2.0, 58.0, 30)
@@ -210,6 +212,67 @@ def test_a_step_of_speed_tells_the_numbers_of_rate_and_state() -> None:
     assert found.values == pytest.approx({"mu": 0.6, "a": 0.008, "b": 0.011, "slip_length": 8.0}, rel=1e-4)
 
 
+SHAKEN = {"velocity_amplitude": "20 mm/s", "frequency": "50 Hz"}
+IN_SI = fl.Scene.si(slip=SHAKEN, normal_load="30 N", belt_speed="5 mm/s")
+
+
+def test_measurements_and_ranges_may_have_units() -> None:
+    law = fl.Dahl(mu=0.4, presliding_length="20 um")
+    speeds = np.linspace(2, 18, 9)
+    forces = fl.curve(IN_SI, law, speeds * 1e-3)["mean_friction_N"]
+    data = {"belt_speed": speeds, "mean_friction": forces / 1e3, "sigma": 1e-6 + 0.0 * speeds}
+    units = {"belt_speed": "mm/s", "mean_friction": "kN", "sigma": "kN"}
+    free = {"mu": (0.1, "60 %"), "presliding_length": ("1 um", "0.1 mm")}
+    found = fl.fit(data, fl.Dahl(mu=0.3, presliding_length=5e-6), IN_SI, free, starts=2, units=units)
+
+    assert found.values == pytest.approx({"mu": 0.4, "presliding_length": 2e-5}, rel=1e-4)
+    length = found.params["presliding_length"]
+    assert (length.min, length.max, length.unit) == (1e-6, pytest.approx(1e-4), "m")
+    assert set(length.correl) == {"mu"}
+    assert abs(length.correl["mu"]) <= 1.0
+    assert any(line.startswith("presliding_length = 20 µm (95 %: ") for line in found.sentences)
+
+
+def test_rows_beyond_the_end_of_reversal_are_said_to_tell_nothing_of_the_motion() -> None:
+    speeds = np.linspace(60, 90, 6)
+    data = {"belt_speed": speeds, "mean_friction": 0.4 + 1e-3 * np.sin(speeds)}
+    (said,) = [
+        line
+        for line in fl.fit(data, fl.Coulomb(mu=0.3), SCENE, {"mu": (0.1, 1)}, starts=2).sentences
+        if "V_lin" in line
+    ]
+    assert said.startswith("all rows lie beyond V_lin = ")
+
+
+@pytest.mark.parametrize(
+    ("told", "said"),
+    [
+        (
+            {"data": {"units": {"belt_speed": "mm"}}},
+            r"data\.units\.belt_speed: .*is a length \[m\]; give a speed",
+        ),
+        ({"data": {"units": {"block": "mm"}}}, r"data\.units\.block: has no unit; belt_speed, mean_friction"),
+        (
+            {"free": {"presliding_length": ["1 mm/s", "2 mm/s"]}},
+            r"free\.presliding_length: .*give a length \[m\]",
+        ),
+        ({"free": {"mu": ["60 %", "10 %"]}}, r"free\.mu: must rise, got 0\.6 to 0\.1"),
+        (
+            {"scene": {"belt_speed": 1, "slip": {"velocity_amplitude": 1, "frequency": 1}}},
+            "data.units: go with a scene",
+        ),
+    ],
+)
+def test_wrong_units_are_told(told: dict[str, Any], said: str, tmp_path: Path) -> None:
+    (tmp_path / "measured.csv").write_text("belt_speed,mean_friction\n1,2\n3,4\n")
+    data = {"file": str(tmp_path / "measured.csv"), "units": {"belt_speed": "mm/s"}}
+    laws = [{"kind": "dahl", "mu": 0.3, "presliding_length": 1e-6}]
+    scene = {"dimensional": {"slip": SHAKEN, "belt_speed": "1 mm/s"}}
+    tree = {"schema": 1, "scene": scene, "laws": laws, "free": {"mu": [0.1, 1]}} | told
+    with pytest.raises(StudyError, match=said):
+        parse_study(tree | {"data": data | told.get("data", {})})
+
+
 @pytest.mark.parametrize(
     ("free", "said"),
     [
@@ -253,7 +316,7 @@ def test_the_command_writes_tables_a_figure_and_a_page(
     assert told.startswith("Coulomb fits with an rms of ")
     fitted = pd.read_csv(folder / "fit.csv")
     assert fitted["value"].to_list() == pytest.approx([0.4], abs=0.002)
-    names = "law parameter value block_error naive_error low high shape at_bound"
+    names = "law parameter value unit block_error naive_error low high shape at_bound"
     assert list(fitted) == names.split()
     assert {"fit.svg", "fit.png"} == {path.name for path in (folder / "figures").iterdir()}
     assert "coulomb" in (folder / "report.html").read_text()

@@ -38,7 +38,7 @@ def measured_of(study: Study) -> Measurements:
     assert study.data is not None
     folder = Path() if study.path is None else study.path.parent
     tables = [_read(folder / name, dict(study.data.columns)) for name in study.data.file]
-    measured = given_measurements(tables, ", ".join(study.data.file), study.scene.dimensional is not None)
+    measured = given_measurements(tables, ", ".join(study.data.file), study.scene, units=study.data.units)
     if not measured.is_path and study.scene == Scene(**SLIP_ALONE):
         raise WrongData(f"{study.path or 'study'}: {NEEDS_SCENE}")
     return measured
@@ -94,6 +94,7 @@ def fit(
     starts: int = STARTS,
     tell: Callable[[str], None] | None = None,
     threads: int = 1,
+    units: Mapping[str, str] | None = None,
 ) -> FittedLaws:
     """Fit numbers of laws, and of their scene, to measurements by least squares.
 
@@ -111,7 +112,8 @@ def fit(
         Scene of the measurements; none for a measured path.
     free : dict of str to tuple
         Required. Ranges by name, ``{"mu": (0.1, 1)}``, of which each law takes those it has, or by path,
-        ``"scene.damping_ratio"``. Instead of a tuple, a mapping with from, to and spacing (linear or log).
+        ``"scene.damping_ratio"``; text with a unit if the scene is in SI units, ``("1 um", "0.1 mm")``.
+        Instead of a tuple, a mapping with from, to and spacing (linear or log).
     blocks : array_like, shape (n,), optional
         Label of the block of each row, instead of the column; rows of different blocks are independent.
     starts : int, >= 1, default 8
@@ -120,6 +122,9 @@ def fit(
         Function that is called with the name of what is being fitted.
     threads : int, >= 1, default 1
         Derivatives that are computed at the same time. Results do not depend on it.
+    units : dict of str to str, optional
+        Units of columns, for a scene in SI units: ``{"belt_speed": "mm/s", "mean_friction": "N"}``. A force is
+        divided by ``normal_load_N``, or by the normal load of the scene.
 
     Returns
     -------
@@ -147,7 +152,7 @@ def fit(
     """
     laws = [given_law(each) for each in (law if isinstance(law, Sequence) else [law])]
     body = None if scene is None else given_scene(scene)
-    measured = given_measurements(data, in_si=bool(body and body.dimensional), blocks=blocks)
+    measured = given_measurements(data, scene=body, blocks=blocks, units=units)
     return fit_measured(measured, laws, body, free or {}, starts, tell, threads)
 
 

@@ -195,11 +195,9 @@ def _nearest(
         raise ValueError(
             f"the curve to come near has no mean friction everywhere: {row['status']}: {row['reason']}"
         )
-    in_si = scene.dimensional is not None
-    name = "belt_speed_m_per_s" if in_si else "belt_speed"
-    measured: Measurements = given_measurements(
-        {name: speeds, "mean_friction": target["mean_friction"]}, "of", in_si
-    )
+    name = "belt_speed" if scene.dimensional is None else "belt_speed_m_per_s"
+    found = {name: speeds, "mean_friction": target["mean_friction"]}
+    measured: Measurements = given_measurements(found, "of", scene)
     residuals = Residuals(model, measured)
     shares = search(residuals, starts).best.shares
     if norm == "largest":

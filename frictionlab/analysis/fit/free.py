@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.scene.dimensional import unit_of
 from frictionlab.scene.scene import Scene
-from frictionlab.study.keys import StudyKeys
+from frictionlab.study.keys import StudyKeys, range_in_numbers
 from frictionlab.study.study import kind_of
+from frictionlab.study.written import units_of_law
 from frictionlab.values.notes import closest
 from frictionlab.values.quantities import Floats, given_values
 from frictionlab.values.validation import checked_value
@@ -57,6 +59,13 @@ class Model:
     law: FrictionLaw
     scene: Scene | None
     free: tuple[FreeNumber, ...]
+
+    def unit(self, name: str) -> str:
+        """Return the unit of a free number in SI; '' where it has none or the scene is nondimensional."""
+        if self.scene is None or self.scene.dimensional is None:
+            return ""
+        key = name.rpartition(".")[2].partition("[")[0]
+        return unit_of(key) or "" if name.startswith("scene.") else units_of_law(type(self.law)).get(key, "")
 
     @property
     def label(self) -> str:
@@ -114,7 +123,8 @@ def free_numbers(
             raise ValueError(
                 f"free: no number '{name}' of the laws or the scene{f'; did you mean {hint!r}?' if hint else ''}"
             )
-    ranges = {name: _range(name, value) for name, value in given.items()}
+    in_si = scene is not None and scene.dimensional is not None
+    ranges = {name: _range(name, value, [type(law) for law in laws], in_si) for name, value in given.items()}
     return {
         place: tuple(each for name, each in ranges.items() if name in of_scene or name in law)
         for place, law in enumerate(known)
@@ -131,11 +141,12 @@ def _numbers_of(values: Mapping[str, Any], before: str) -> dict[str, Any]:
     return found
 
 
-def _range(name: str, given: Any) -> FreeNumber:
+def _range(name: str, given: Any, laws: Sequence[type[FrictionLaw]], in_si: bool) -> FreeNumber:
     """Raises ValueError with the first mistake in a range."""
     read, what, _ = checked_value(StudyKeys, "free", {name: given})
-    if what is not None:
+    found, what = (None, what) if what is not None else range_in_numbers(name, read[name], laws, in_si)
+    if found is None:
         raise ValueError(f"free.{name}: {what}")
-    low, high, spacing = read[name].low, read[name].high, read[name].spacing
+    low, high, spacing = float(found.low), float(found.high), found.spacing
     far = low > 0.0 and high / low >= LOG_ABOVE
     return FreeNumber(name, low, high, spacing == "log" or (spacing is None and far))

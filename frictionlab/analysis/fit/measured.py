@@ -16,9 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.scene import Scene
+from frictionlab.study.keys import column_in_si
 from frictionlab.values.columns import BELT_SPEEDS
-from frictionlab.values.notes import closest
+from frictionlab.values.notes import Unfit, closest
 from frictionlab.values.quantities import Floats
+from frictionlab.values.units import in_units
 from frictionlab.values.validation import field_path, number_paths
 
 OF_A_PATH = ("time", "slip", "friction")
@@ -100,11 +102,15 @@ class WrongData(ValueError):
 
 
 def given_measurements(
-    data: Any, where: str = "data", in_si: bool = False, blocks: ArrayLike | None = None
+    data: Any,
+    where: str = "data",
+    scene: Scene | None = None,
+    blocks: ArrayLike | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> Measurements:
-    """A table, a mapping of columns, or a list of such, as one. where: what messages call it. in_si: of the scene.
+    """Join a table, a mapping of columns, or a list of such. where: what messages call it. scene: of a curve.
 
-    blocks: a label for each row, in place of the column. Raises WrongData.
+    blocks: a label for each row, in place of the column. units: of columns. Raises WrongData.
     """
     tables = data if isinstance(data, Sequence) and not isinstance(data, str) else [data]
     if not len(tables):
@@ -114,7 +120,24 @@ def given_measurements(
         if len(labels := np.asarray(blocks)) != len(whole):
             raise WrongData(f"blocks: one label a row is needed, {len(whole)}, got {len(labels)}")
         whole = whole.assign(block=labels)
-    return _checked(whole, where, in_si)
+    for name, unit in (units or {}).items():
+        whole = _in_si(whole, name, unit, where)
+    return _checked(whole, where, None if scene is None else scene.dimensional)
+
+
+def _in_si(table: pd.DataFrame, name: str, unit: str, where: str) -> pd.DataFrame:
+    """Return the table with a column in SI units, under the name that says so. Raises WrongData."""
+    if name not in table:
+        there = ", ".join(map(str, table.columns))
+        raise WrongData(f"{where}: units.{name}: there is no such column, there are {there}")
+    try:
+        column, wanted = column_in_si(name)
+    except ValueError as problem:
+        raise WrongData(f"{where}: units.{name}: {problem}") from None
+    factor = in_units(f"1 {unit}", wanted)
+    if isinstance(factor, Unfit):
+        raise WrongData(f"{where}: units.{name}: {factor.what}")
+    return table.assign(**{column: _numbers(table[name], name, where) * float(factor)}).drop(columns=name)
 
 
 def _as_table(data: Any, where: str) -> pd.DataFrame:
@@ -134,11 +157,11 @@ def _is_a_number(text: Any) -> bool:
     return False
 
 
-def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
+def _checked(table: pd.DataFrame, where: str, si: Any) -> Measurements:
     is_path, timed = "time" in table or "slip" in table, "time" in table or "slip" not in table
     table = table if timed else table.assign(time=np.arange(float(len(table))))
-    speed = "belt_speed_m_per_s" if in_si else "belt_speed"
-    table = _friction_over_load(table, is_path, where)
+    speed = "belt_speed" if si is None else "belt_speed_m_per_s"
+    table = _friction_over_load(table, is_path, where, None if si is None else si.load)
     wanted = OF_A_PATH if is_path else (speed, "mean_friction")
     for name in wanted:
         if name not in table:
@@ -149,7 +172,9 @@ def _checked(table: pd.DataFrame, where: str, in_si: bool) -> Measurements:
                 raise WrongData(f"{told} {','.join(wanted)}")
             there = f"the column '{name}' is missing, there are {', '.join(map(str, table.columns))}"
             if (bare := without_unit(name)) in table:
-                raise WrongData(f"{where}: {there}; '{bare}' tells no unit: in m/s its name is {name}")
+                raise WrongData(
+                    f"{where}: {there}; '{bare}' tells no unit: say units: {{{bare}: mm/s}}, or call it {name}"
+                )
             hint = closest(name, list(table.columns))
             raise WrongData(f"{where}: {there}{hint and f'; did you mean {hint!r}?'}")
     kept = [name for name in table if name in (*wanted, *OTHERS) or str(name).startswith("scene.")]
@@ -189,14 +214,19 @@ def _check_input(name: str, where: str) -> None:
     raise WrongData(f"{where}: no number of a scene is '{name}'{hint and f'; did you mean scene.{hint}?'}")
 
 
-def _friction_over_load(table: pd.DataFrame, is_path: bool, where: str) -> pd.DataFrame:
-    """Forces in N over the normal load in N."""
+def _friction_over_load(table: pd.DataFrame, is_path: bool, where: str, load: float | None) -> pd.DataFrame:
+    """Divide forces in N by the normal load in N: that of the row, else of the scene."""
     name = "friction" if is_path else "mean_friction"
-    if f"{name}_N" not in table or name in table:
+    forces = [each for each in (name, "sigma") if f"{each}_N" in table and each not in table]
+    if not forces:
         return table
-    if "normal_load_N" not in table:
-        raise WrongData(f"{where}: {name}_N needs the column normal_load_N, or give {name}, the coefficient")
-    return table.assign(**{name: table[f"{name}_N"] / table["normal_load_N"]})
+    rows = [each for each in ("normal_load_N", "scene.dimensional.normal_load_N") if each in table]
+    if not rows and load is None:
+        raise WrongData(
+            f"{where}: {forces[0]}_N needs the column normal_load_N, or give {forces[0]}, the coefficient"
+        )
+    over = table[rows[0]] if rows else load
+    return table.assign(**{each: table[f"{each}_N"] / over for each in forces})
 
 
 def _numbers(column: pd.Series, name: str, where: str) -> pd.Series:

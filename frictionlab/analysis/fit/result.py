@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -17,14 +18,27 @@ from frictionlab.analysis.fit.errors import (
     correlation_length,
     covariances,
 )
-from frictionlab.analysis.fit.free import Model
+from frictionlab.analysis.fit.free import FreeNumber, Model
 from frictionlab.analysis.fit.measured import Measurements
 from frictionlab.analysis.fit.profiles import LeftOut, Profile, profile, without_blocks
 from frictionlab.analysis.fit.residuals import ON_A_BOUND, Residuals, SearchEnds
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.values.printable import with_error
 from frictionlab.values.quantities import Floats
+from frictionlab.values.units import ShownUnit, handy_unit
+
+
+class FitParameter(NamedTuple):
+    """Fitted number with its standard error, range, SI unit and correlations with the others, as lmfit has them."""
+
+    value: float
+    stderr: float
+    min: float
+    max: float
+    unit: str
+    correl: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,13 +110,30 @@ class FittedLaw:
         return self.model.values(self.found.best.shares)
 
     def errors(self, covariance: Floats) -> dict[str, float]:
-        """Standard errors of the values; NaN for a number on an end of its range."""
-        values = self.values
-        spread = np.sqrt(np.diag(covariance))
+        """Standard errors of the values; NaN for a number on an end of its range, or if wider than that."""
+        values, found = self.values, {}
+        for each, size, bound in zip(
+            self.model.free, np.sqrt(np.diag(covariance)), self.on_a_bound, strict=True
+        ):
+            error = float(each.slope(values[each.name]) * size)
+            found[each.name] = math.nan if bound or error > each.high - each.low else error
+        return found
+
+    @property
+    def params(self) -> dict[str, FitParameter]:
+        """Return value, error, range, unit and correlations of each number, by blocks."""
+        spread, errors = self.covariances.by_blocks, self.errors(self.covariances.by_blocks)
+        sizes = np.sqrt(np.diag(spread))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            alike = spread / np.outer(sizes, sizes)
+        names = list(self.values)
         return {
-            each.name: float("nan") if bound else float(each.slope(values[each.name]) * size)
-            for each, size, bound in zip(self.model.free, spread, self.on_a_bound, strict=True)
-        }
+            each.name: FitParameter(
+                self.values[each.name], errors[each.name], each.low, each.high, self.model.unit(each.name),
+                {names[k]: float(alike[at, k]) for k in range(len(names)) if k != at},
+            )
+            for at, each in enumerate(self.model.free)
+        }  # fmt: skip
 
     @property
     def on_a_bound(self) -> list[bool]:
@@ -170,6 +201,8 @@ class FittedLaws:
     (True, True)
     >>> found.block_errors["mu"] > 0, found.naive_errors["mu"] > 0, found.intervals["mu"][0] < found.values["mu"]
     (True, True, True)
+    >>> found.params["mu"].min, found.params["mu"].stderr == found.block_errors["mu"]
+    (0.1, True)
     >>> found.shapes, found.table["parameter"].tolist(), found.laws["status"].tolist()
     ({'mu': 'bounded'}, ['mu'], ['ok'])
     >>> len(found.residuals), found.sentences[0].partition(" with")[0]
@@ -259,6 +292,11 @@ class FittedLaws:
         return self.best.shapes
 
     @property
+    def params(self) -> dict[str, FitParameter]:
+        """Fitted numbers of the best law with ``value``, ``stderr``, ``min``, ``max``, ``unit`` and ``correl``."""
+        return self.best.params
+
+    @property
     def law(self) -> FrictionLaw:
         """Best law with its fitted numbers."""
         return self.best.model.at(self.best.found.best.shares)[0]
@@ -272,7 +310,8 @@ class FittedLaws:
     def table(self) -> pd.DataFrame:
         """Table with a row for each law and fitted number.
 
-        Columns: ``value``, ``block_error``, ``naive_error``, ``low``, ``high``, ``shape``, ``at_bound``.
+        Columns: ``value``, ``unit`` in SI, ``block_error``, ``naive_error``, ``low``, ``high``, ``shape``,
+        ``at_bound``.
         """
         rows = []
         for each in self.fitted:
@@ -280,6 +319,7 @@ class FittedLaws:
             for name, bound in zip(each.values, each.on_a_bound, strict=True):
                 low, high = each.intervals[name]
                 row = {"law": each.model.label, "parameter": name, "value": each.values[name]}
+                row["unit"] = each.model.unit(name)
                 row |= {"block_error": block[name], "naive_error": naive[name], "low": low, "high": high}
                 rows.append(row | {"shape": each.shapes[name], "at_bound": bound})
         return pd.DataFrame(rows)
@@ -393,26 +433,43 @@ def _which(fit: FittedLaws) -> list[str]:
 def _how_sure(fit: FittedLaws) -> list[str]:
     best = fit.best
     block, naive = fit.block_errors, fit.naive_errors
-    told = [
-        f"{name} = {with_error(value, block[name])} (95 %: {low:.4g} to {high:.4g})"
-        if block[name] <= number.high - number.low
-        else f"{name} = {value:.4g} (95 %: {low:.4g} to {high:.4g}; blocks tell less than its range)"
-        for number, (name, value), (low, high) in zip(
-            best.model.free, best.values.items(), best.intervals.values(), strict=True
-        )
-    ]
-    ratios = [block[name] / naive[name] for name in block if naive[name] > 0.0]
-    if ratios and max(ratios) > 1.5:
+    told = [_told(best, number, block[number.name]) for number in best.model.free]
+    ratios = [block[name] / naive[name] for name in block if block[name] > 1.5 * naive[name] > 0.0]
+    if ratios:
+        times = dict.fromkeys(f"{ratio:.2g}" for ratio in (min(ratios), max(ratios)))
+        alike = correlation_length(best.raw)
+        samples = f": residuals are alike over about {alike:.0f} samples, each of which AIC counts as new"
         told.append(
-            f"errors from {best.blocks.max() + 1} blocks ({best.blocks_from}) are {min(ratios):.2g} to "
-            f"{max(ratios):.2g} times the naive ones: residuals are alike over about "
-            f"{correlation_length(best.raw):.0f} samples, each of which AIC counts as new"
+            f"errors from {best.blocks.max() + 1} blocks ({best.blocks_from}) are {' to '.join(times)} times the "
+            f"naive ones{samples if alike >= 1.5 else ''}"
         )
     return told
 
 
+def _told(law: FittedLaw, number: FreeNumber, error: float) -> str:
+    """Tell a number with its error and interval, in a unit of a handy size."""
+    value, (low, high), name = law.values[number.name], law.intervals[number.name], number.name
+    unit = handy_unit(law.model.unit(name), abs(value)) if law.model.unit(name) else ShownUnit("")
+    said = with_error(value / unit.size, error / unit.size, 4)
+    whole = low <= number.low * (1.0 + 1e-9) and high >= number.high * (1.0 - 1e-9)
+    wide = math.isnan(error) and not min(value - number.low, number.high - value) <= 0.0
+    end = (
+        ", the whole range: the data do not tell"
+        if whole
+        else "; blocks tell less than its range"
+        if wide
+        else ""
+    )
+    of = f" {unit.unit}" if unit.unit else ""
+    return f"{name} = {said}{of} (95 %: {low / unit.size:.4g} to {high / unit.size:.4g}{of}{end})"
+
+
 def _what_to_know(fit: FittedLaws) -> list[str]:
     told = []
+    if (end := _beyond(fit)) is not None:
+        told.append(
+            f"all rows lie beyond V_lin = {end}, where friction is that of steady sliding whatever vibrates"
+        )
     if fit.measured.missing:
         told.append(f"{fit.measured.missing} samples are missing and were left out")
     for each in fit.fitted:
@@ -422,8 +479,10 @@ def _what_to_know(fit: FittedLaws) -> list[str]:
                 told.append(
                     f"{several}{number.name} is on an end of its range, {each.values[number.name]:.4g}"
                 )
-        for name, form in each.shapes.items():
-            if form != "bounded":
+        for number, (name, form) in zip(each.model.free, each.shapes.items(), strict=True):
+            if form == "flat" and each is not fit.best:
+                told.append(f"{several}{_told(each, number, math.nan)}")
+            elif form != "bounded":
                 told.append(f"{several}the profile of {name} is {form}")
         if each.found.others:
             other = each.found.others[0]
@@ -435,3 +494,16 @@ def _what_to_know(fit: FittedLaws) -> list[str]:
                 f"{label}: only {each.found.agreeing} of {each.found.starts} starts found this minimum"
             )
     return told
+
+
+def _beyond(fit: FittedLaws) -> str | None:
+    """Return V_lin in words if all rows of a curve of one scene are beyond it."""
+    scene = fit.best.model.scene
+    if fit.measured.is_path or scene is None or len(fit.measured.groups) > 1:
+        return None
+    unit = ShownUnit("m/s") if scene.dimensional is not None else ShownUnit("")
+    end = friction_free_velocity(scene) * (
+        1.0 if scene.dimensional is None else scene.dimensional.scales.velocity
+    )
+    slowest = float(fit.measured.table[fit.measured.along].abs().min())
+    return unit.text(end).strip() if 0.0 < end < slowest else None

@@ -9,8 +9,7 @@ The numbers of a scene and of a law by dotted path, and both with one of them ch
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,8 +32,7 @@ class Pair(NamedTuple):
     def numbers(self) -> dict[str, float]:
         """``scene.<path>`` and ``law.<name>`` of every number that may be changed a little."""
         told = {f"scene.{path}": value for path, value in self.scene.given_values().items()}
-        left_out = {name: value for name, value in self.law if name not in self.law.model_fields_set}
-        told |= {f"law.{name}": value for name, value in _cells(given_values(self.law) | left_out)}
+        told |= {f"law.{name}": value for name, value in cells(dict(self.law)).items()}
         return {
             path: float(value)
             for path, value in told.items()
@@ -46,12 +44,7 @@ class Pair(NamedTuple):
         owner, _, name = path.partition(".")
         if owner == "scene":
             return self._replace(scene=self.scene.with_(**{name: value}))
-        changed: Any = value
-        if place := re.fullmatch(r"(.+)\[(\d+)\]", name):
-            name, several = place[1], list(getattr(self.law, place[1]))
-            several[int(place[2])] = value
-            changed = tuple(several)
-        return self._replace(law=type(self.law)(**(given_values(self.law) | {name: changed})))
+        return self._replace(law=with_numbers(self.law, {name: value}))
 
 
 def asked_for(numbers: dict[str, float], paths: Any) -> list[str]:
@@ -69,15 +62,37 @@ def asked_for(numbers: dict[str, float], paths: Any) -> list[str]:
     return list(dict.fromkeys(paths))
 
 
-def _cells(values: dict[str, Any]) -> list[tuple[str, Any]]:
-    """Values by name, several numbers as ``name[0]``, ``name[1]``."""
-    cells: list[tuple[str, Any]] = []
+def cells(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values by name, several numbers as ``name[0]``, ``name[1]``."""
+    cells: dict[str, Any] = {}
     for name, value in values.items():
-        if isinstance(value, tuple):
-            cells += [(f"{name}[{k}]", each) for k, each in enumerate(value)]
-        else:
-            cells.append((name, value))
+        several = enumerate(value) if isinstance(value, tuple) else ()
+        cells |= {f"{name}[{k}]": each for k, each in several} or {name: value}
     return cells
+
+
+INSTEAD = [
+    {"stiffness", "presliding_length", "contact_stiffness"},
+    {"damping", "contact_damping"},
+]
+"""Numbers of a law of which one alone is given."""
+
+
+def with_numbers(law: FrictionLaw, values: Mapping[str, float]) -> FrictionLaw:
+    """Return the law with these numbers in place of its own; one of several in a list by ``name[0]``."""
+    told = given_values(law)
+    for name, value in values.items():
+        for group in INSTEAD:
+            if name in group:
+                told = {key: x for key, x in told.items() if key not in group or key == name}
+        head, bracket, place = name.partition("[")
+        if bracket:
+            several = list(told[head])
+            several[int(place.rstrip("]"))] = value
+            told[head] = tuple(several)
+        else:
+            told[name] = value
+    return type(law)(**told, label=law.label)
 
 
 _Values = Callable[[Floats], list[Floats | None]]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from frictionlab.analysis.quotients import cells, with_numbers
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.dimensional import unit_of
 from frictionlab.scene.scene import Scene
@@ -14,16 +15,11 @@ from frictionlab.study.keys import StudyKeys, range_in_numbers
 from frictionlab.study.study import kind_of
 from frictionlab.study.written import units_of_law
 from frictionlab.values.notes import closest
-from frictionlab.values.quantities import Floats, given_values
+from frictionlab.values.quantities import Floats
 from frictionlab.values.validation import checked_value
 
 LOG_ABOVE = 100.0
 """Ratio of the ends of a positive range above which it is searched by its logarithm."""
-INSTEAD = [
-    {"stiffness", "presliding_length", "contact_stiffness"},
-    {"damping", "contact_damping"},
-]
-"""Numbers of a law of which one alone is given."""
 
 
 @dataclass(frozen=True)
@@ -91,23 +87,6 @@ class Model:
         return with_numbers(self.law, of_law), scene
 
 
-def with_numbers(law: FrictionLaw, values: Mapping[str, float]) -> FrictionLaw:
-    """Return the law with these numbers in place of its own; one of several in a list by ``name[0]``."""
-    told = given_values(law)
-    for name, value in values.items():
-        for group in INSTEAD:
-            if name in group:
-                told = {key: x for key, x in told.items() if key not in group or key == name}
-        head, bracket, place = name.partition("[")
-        if bracket:
-            several = list(told[head])
-            several[int(place.rstrip("]"))] = value
-            told[head] = tuple(several)
-        else:
-            told[name] = value
-    return type(law)(**told, label=law.label)
-
-
 def free_numbers(
     given: Mapping[str, Any], laws: Sequence[FrictionLaw], scene: Scene | None
 ) -> dict[int, tuple[FreeNumber, ...]]:
@@ -132,13 +111,13 @@ def free_numbers(
 
 
 def _numbers_of(values: Mapping[str, Any], before: str) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, value in values.items():
-        if isinstance(value, tuple):
-            found |= {f"{before}{name}[{k}]": each for k, each in enumerate(value)}
-        elif value is None or (isinstance(value, float | int) and not isinstance(value, bool)):
-            found[f"{before}{name}"] = value
-    return found
+    """Return numbers, and what may be one, by name."""
+    kinds = float | int | None
+    return {
+        f"{before}{name}": value
+        for name, value in cells(values).items()
+        if isinstance(value, kinds) and not isinstance(value, bool)
+    }
 
 
 def _range(name: str, given: Any, laws: Sequence[type[FrictionLaw]], in_si: bool) -> FreeNumber:

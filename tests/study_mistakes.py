@@ -201,8 +201,6 @@ HINTS = [
     ("{kind: coulomb, mu: 0.4}", "coulomb: {mu: 0.4, mu_static: 0.5}", "write {kind: coulomb, mu: 0.4, mu_static: 0.5}"),
     ("{kind: coulomb, mu: 0.4}", "coulomb: 0.4", "write {kind: coulomb, ...}"),
     ("{kind: shooting, label: second}", "{march: {steps: 100}}", "write {kind: march, steps: 100}"),
-    ("kind: coulomb, mu: 0.4", "kind: lugre, mu: 0.4, stiffness: 40, label: coulomb", "did you mean 'mu_kinetic'?"),
-    ("kind: coulomb, mu: 0.4", "kind: stribeck, mu: 0.4, mu_static: 0.5, label: coulomb", "did you mean 'mu_kinetic'?"),
     ("kind: coulomb, mu: 0.4", "kind: coulomb, mu_kinetic: 0.4", "did you mean 'mu'?"),
     ("kind: coulomb, mu: 0.4", "kind: coulomb, mu: 0.4, mu_kinetic: 0.4", "did you mean 'mu_static'?"),
     ("  scene.belt_speed: {", "  frequency: {", "did you mean 'scene.drive.frequency'?"),

@@ -177,10 +177,25 @@ class FrictionLaw(Labelled, ABC):
     expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
     memory_kind: ClassVar[Literal["undeclared", "none", "bristle", "deflections", "scalars"]] = "undeclared"
     compliant: ClassVar[bool] = False
+    spellings: ClassVar[Mapping[str, str]] = MappingProxyType({})
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         accept_arrays(cls)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        one_coefficient = "mu_kinetic" in cls.model_fields and "mu" not in cls.model_fields
+        cls.spellings = MappingProxyType({"mu": "mu_kinetic"} if one_coefficient else {})
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_word_for_a_coefficient(cls, data: Any) -> Any:
+        """Take ``mu`` for ``mu_kinetic`` where the law has that alone."""
+        if not cls.spellings or not isinstance(data, Mapping) or "mu" not in data or "mu_kinetic" in data:
+            return data
+        return {cls.spellings.get(name, name): value for name, value in data.items()}
 
     @model_validator(mode="before")
     @classmethod

@@ -414,9 +414,9 @@ def compare(
     laws : FrictionLaw, list of FrictionLaw, or dict of str to FrictionLaw
         One law, a list of laws, or a mapping label -> law. Two laws of one kind in a list need a ``label=``.
     belt_speed : array_like of float, or dict, optional
-        Belt speeds [omega_1 L; m/s for a scene in SI units]: a list, or a range as in a study, ``{"start": 1,
-        "stop": 60, "num": 120}``. With ``"within": 1e-3`` instead of ``num`` points are chosen where curves
-        bend. The belt speed of the scene if left out.
+        Belt speeds [omega_1 L; m/s for a scene in SI units, or text such as ``"10 mm/s"``]: a list, or a range as
+        in a study, ``{"start": 1, "stop": 60, "num": 120}``. With ``"within": 1e-3`` instead of ``num`` points
+        are chosen where curves bend. The belt speed of the scene if left out.
     methods : str, Method, or a list or dict of them, default "auto"
         Name of a method, a method such as ``fl.March(steps=1000)``, a list of them, or a mapping
         label -> method.
@@ -454,7 +454,11 @@ def compare(
     [0.218, 0.218]
     """
     ready = given_scene(scene)
-    listed = belt_speed if belt_speed is None or isinstance(belt_speed, Mapping) else given_speeds(belt_speed)
+    listed = (
+        belt_speed
+        if belt_speed is None or isinstance(belt_speed, Mapping)
+        else given_speeds(belt_speed, ready)
+    )
     over = {} if listed is None else {BELT_SPEEDS[ready.dimensional is not None]: listed}
     return sweep(scene, laws, over, methods, tolerance, columns, executor, progress)
 

@@ -81,7 +81,8 @@ def curve(
     law : FrictionLaw
         Law of friction.
     belt_speed : array_like of float, shape (n,)
-        Belt speeds [omega_1 L; m/s for a scene in SI units]; a number is one belt speed.
+        Belt speeds [omega_1 L; m/s for a scene in SI units, or text such as ``"10 mm/s"``]; a number is one belt
+        speed, ``{"start": 1, "stop": 60, "num": 120}`` a range.
     method : str or Method, default "auto"
         Name of a method, or a method such as ``fl.March(steps=1000)``.
     tolerance : float, > 0, default 1e-8
@@ -121,7 +122,7 @@ def curve(
     kind, wanted = kind_of(law), selected(None if columns is None else given_columns(columns, scene))
     task = Task(given_tolerance(tolerance), columns=wanted)
     # a method is never given a belt speed twice
-    different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
+    different, places = np.unique(given_speeds(belt_speed, scene), return_inverse=True)
     whole = _one_curve(kind, law, ready, Scenes(scene, different))
     table = table_of([whole], task, executor, progress, usual=columns is None)
     return table.iloc[places].reset_index(drop=True)
@@ -202,7 +203,7 @@ def attractors(
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     starts = at_least_one("starts", starts)
-    different = np.unique(given_speeds(belt_speed))
+    different = np.unique(given_speeds(belt_speed, scene))
     whole = _one_curve(kind_of(law), law, ready, Scenes(scene, different))
     with progress_told(progress, "following starts", ""):
         return attractor_table([whole], given_tolerance(tolerance), starts)

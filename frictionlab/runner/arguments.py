@@ -11,13 +11,13 @@ from os import PathLike
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.study import registry
+from frictionlab.study.axes import ENDS, WITHIN, SweepRange
 from frictionlab.study.keys import USUAL_LIMIT
 from frictionlab.study.load import load_study, parse_study
 from frictionlab.study.study import Study
@@ -25,12 +25,14 @@ from frictionlab.values.columns import ALL, GROUPS, RESULTS, SI
 from frictionlab.values.notes import (
     Mistake,
     StudyError,
+    Unfit,
     closest,
     did_you_mean,
     python_text,
     unknown_name,
 )
 from frictionlab.values.quantities import Floats, rebuilt
+from frictionlab.values.units import in_units
 
 Existing = Literal["reuse", "replace"]
 """Ways to treat results that are already in the folder of a run."""
@@ -77,19 +79,35 @@ def given_tolerance(tolerance: float, name: str = "tolerance") -> float:
     return float(tolerance)
 
 
-def given_speeds(belt_speed: ArrayLike) -> Floats:
-    """Return belt speeds as an array. Raises ValueError."""
+def given_speeds(belt_speed: Any, scene: Scene) -> Floats:
+    """Return belt speeds as an array: numbers, texts with units of a scene in SI units, or a range.
+
+    Raises ValueError.
+    """
+    if isinstance(belt_speed, Mapping):
+        if WITHIN in belt_speed:
+            raise ValueError("belt_speed: fl.compare and fl.sweep take ranges with within; give num")
+        ends = {key: _speed(value, scene) if key in ENDS else value for key, value in belt_speed.items()}
+        return np.array(SweepRange(**ends).values())
     given = np.atleast_1d(np.asarray(belt_speed, dtype=object))
-    if given.ndim != 1 or isinstance(belt_speed, str | Mapping):
-        hint = "fl.compare and fl.sweep take ranges" if isinstance(belt_speed, Mapping) else ""
-        raise ValueError(_refusal("belt_speed must be a list of finite numbers", belt_speed, hint))
+    if given.ndim != 1:
+        raise ValueError(_refusal("belt_speed must be a list of finite numbers", belt_speed))
     if not given.size:
         raise ValueError("belt_speed must be a list of finite numbers, got none")
-    for place, each in enumerate(given):
+    read = [_speed(each, scene) for each in given]
+    for place, each in enumerate(read):
         if isinstance(each, bool) or not isinstance(each, Real) or not isfinite(each):
             where = f" at [{place}]" if np.ndim(belt_speed) else ""
             raise ValueError(f"{_refusal('belt_speed must be a list of finite numbers', each)}{where}")
-    return given.astype(np.float64)
+    return np.array(read, dtype=np.float64)
+
+
+def _speed(given: Any, scene: Scene) -> Any:
+    """Return a belt speed, of a scene in SI units a text with a unit as a number. Raises ValueError."""
+    found = in_units(given, "m/s") if isinstance(given, str) and scene.dimensional is not None else given
+    if isinstance(found, Unfit):
+        raise ValueError(f"belt_speed: {found.what}")
+    return found
 
 
 def given_columns(names: Sequence[str] | str, scene: Scene) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
+from frictionlab.values.columns import IN_SI_UNITS, SI
 from frictionlab.values.quantities import at_least_one
 
 if TYPE_CHECKING:
@@ -62,6 +63,29 @@ class OrbitOf:
 
 def _kept(orbit: Orbit | None, _place: int) -> Orbit | None:
     return orbit
+
+
+class InSI(dict[str, float]):
+    """Results in SI units by column; each is an attribute, too, without the unit: ``si.velocity_amplitude``."""
+
+    def __getattr__(self, name: str) -> float:
+        """Return the number of this name. Raises AttributeError."""
+        column = next((each for each, made in SI.items() if made.column == name and each in self), None)
+        if column is None:
+            raise AttributeError(f"no result {name!r} in SI units; there are {', '.join(self.__dir__())}")
+        return self[column]
+
+    def __dir__(self) -> list[str]:
+        """Return the names of its results without their units."""
+        return [SI[name].column for name in self]
+
+    def __repr__(self) -> str:
+        """Return the results that apply with their units."""
+        units = IN_SI_UNITS | dict.fromkeys((name for name, made in SI.items() if made.scale == "load"), "N")
+        told = (
+            f"{SI[name].column} {value:.6g} {units[name]}" for name, value in self.items() if value == value
+        )
+        return f"InSI({', '.join(told)})"
 
 
 @dataclass(frozen=True, repr=False)
@@ -150,7 +174,7 @@ class SteadyState:
         Model that produced the number, in words such as "events"; with ``auto`` also why it was chosen.
     seconds : float
         Time spent in kernels [s].
-    si : dict of str to float
+    si : InSI
         Columns in SI units by name, if the scene is given in SI units.
     motion : OrbitOf or MotionOnSprings, optional
         Orbit, computed when first used; ``orbit`` and ``harmonics`` read it.
@@ -200,7 +224,7 @@ class SteadyState:
     presliding_ratio: float = NAN
     model: str = ""
     seconds: float = NAN
-    si: Mapping[str, float] = field(default_factory=dict)
+    si: InSI = field(default_factory=InSI)
     drift_speed: float = NAN
     drift_speed_error: float = NAN
     motion: OrbitOf | MotionOnSprings | None = field(default=None, compare=False)

@@ -15,7 +15,7 @@ from frictionlab.runner.free_body import MotionOnSprings
 from frictionlab.runner.part import Answered, Part, si_columns, si_scales
 from frictionlab.runner.pieces import Chunk, Task
 from frictionlab.runner.solve import answer, columns_answered, solve
-from frictionlab.runner.state import OrbitOf, SteadyState
+from frictionlab.runner.state import InSI, OrbitOf, SteadyState
 from frictionlab.runner.words import in_si_words
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
@@ -96,10 +96,10 @@ def steady_states(scenes: Scenes, law: FrictionLaw, tolerance: float, columns: S
     return solve(chunk)
 
 
-def _in_si(part: Part, scene: Scene) -> dict[str, float]:
+def _in_si(part: Part, scene: Scene) -> InSI:
     """Return the columns in SI units; none where the scene is not given in them."""
     if scene.dimensional is None:
-        return {}
+        return InSI()
     found = {name: part.numbers.get(name, np.full(1, np.nan)) for name in RESULTS}
     scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
-    return {name: float(column[0]) for name, column in si_columns(found, scales).items()}
+    return InSI({name: float(column[0]) for name, column in si_columns(found, scales).items()})

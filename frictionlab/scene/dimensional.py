@@ -62,7 +62,7 @@ from frictionlab.scene.units import (
     velocity_of,
 )
 from frictionlab.scene.waveforms import SINE
-from frictionlab.values.notes import Unfit
+from frictionlab.values.notes import Mistake, Unfit, WrongValues
 from frictionlab.values.quantities import Finite, NonNegative, Positive, Record, dimensions, given_values
 from frictionlab.values.units import in_units, quantity_in
 from frictionlab.values.validation import field_path
@@ -180,7 +180,21 @@ def changed(
     if changes is not None and not isinstance(changes, Mapping):
         raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
     all_of_them = {path.removeprefix(within): value for path, value in {**(changes or {}), **others}.items()}
+    _check_alternatives(record, held, all_of_them)
     return with_values(given_values(held), dict(_as_fields(record, all_of_them)))
+
+
+def _check_alternatives(record: type[Record], held: Record, changes: Mapping[str, Any]) -> None:
+    """Raise WrongValues for a change to another way to say what is held, with what to write."""
+    named = {field_path(record, path): path for path, value in changes.items() if value is not None}
+    for group in (*getattr(record, "one_of", ()), *getattr(record, "at_most_one_of", ())):
+        for name in (name for name in group if getattr(held, name) is not None and name not in named):
+            new = next((named[other] for other in group if other in named), None)
+            if new is not None and without_unit(name) not in changes and name not in changes:
+                told = f"with_({without_unit(name)}=None, {new}={changes[new]!r})"
+                raise WrongValues(
+                    [Mistake("Scene", None, new, f"takes the place of {without_unit(name)}: write {told}")]
+                )
 
 
 def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

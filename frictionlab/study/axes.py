@@ -32,6 +32,11 @@ class _Ends(Record):
     start: Finite
     stop: Finite
 
+    @classmethod
+    def called(cls) -> str:
+        """Return what messages in Python call it."""
+        return "belt_speed"
+
     @property
     def ends(self) -> tuple[float, float]:
         """Both."""

@@ -22,7 +22,7 @@ from frictionlab.values.notes import Unfit
 from frictionlab.values.printable import printable
 from frictionlab.values.quantities import Written, dimensions
 from frictionlab.values.units import in_units_of_law, unit_of_dimension
-from frictionlab.values.validation import field_path, number_paths, record_at
+from frictionlab.values.validation import field_name, field_path, number_paths, record_at
 
 
 def column_of(path: str) -> str:
@@ -76,11 +76,11 @@ def read_law_numbers(tree: Mapping[str, Any], laws: registry.Laws) -> None:
     for law in given if isinstance(given, list) else ():
         if isinstance(law, dict) and law.get("kind") in laws.usable():
             kind = laws.named(law["kind"])
-            for name in law.keys() & units_of_law(kind):
+            for key in [key for key in law if field_name(kind, key) in units_of_law(kind)]:
                 if in_units_of_si:
-                    law[name] = number_written(kind, name, name, law[name])
-                elif isinstance(law[name], str | Written):
-                    law[name] = Unfit(getattr(law[name], "text", law[name]), "must be a number")
+                    law[key] = number_written(kind, key, field_name(kind, key), law[key])
+                elif isinstance(law[key], str | Written):
+                    law[key] = Unfit(getattr(law[key], "text", law[key]), "must be a number")
 
 
 WIDTH = 110

@@ -117,6 +117,8 @@ def _a_number(value: object, checked: ValidatorFunctionWrapHandler) -> float:
         return cast(float, checked(value))
     if isinstance(value, Unfit):
         raise ValueError(value.what)
+    if getattr(value, "shape", None) == () and hasattr(value, "item"):  # of numpy and xarray
+        value = value.item()
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError("must be a number")
     number = checked(value if isinstance(value, Written) else float(value))

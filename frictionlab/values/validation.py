@@ -51,7 +51,7 @@ def _inside(kind: Any, step: str | int) -> Any:
 
 def field_name(record: type[BaseModel], key: str) -> str:
     """Return the field that a key gives: that of its own name, or one that the record has it for."""
-    other: Mapping[str, str] = getattr(record, "other_names", {})
+    other: Mapping[str, str] = {**getattr(record, "other_names", {}), **getattr(record, "spellings", {})}
     return other.get(key, key)
 
 

@@ -34,8 +34,12 @@ SEVERAL = "one number here: fl.curve, fl.compare and fl.sweep take several"
 WHOLE = "must be a whole number of at least 1, got"
 SAID = {
     "fl.Coulomb(0.4)": "Coulomb takes its values by name: write Coulomb(mu=0.4)",
-    "fl.Stribeck(mu=0.4, mu_static=0.6)": "Stribeck: mu: unknown key; allowed: mu_kinetic, mu_static, "
-    "stribeck_speed, stribeck_exponent, viscosity, curve\n    did you mean 'mu_kinetic'?",
+    "fl.Stribeck(mu=0.4, mu_kinetic=0.6, mu_static=1)": "Stribeck: mu: unknown key; allowed: mu_kinetic, "
+    "mu_static, stribeck_speed, stribeck_exponent, viscosity, curve",
+    "fl.Stribeck(mu=-0.4, mu_static=1)": "Stribeck: mu: must be >= 0, got -0.4",
+    "SI.with_(damping_ratio=0.1)": "Scene: damping_ratio: takes the place of damping: write "
+    "with_(damping=None, damping_ratio=0.1)",
+    "fl.curve(SI, LAW, ['1 mm'])": "belt_speed: '1 mm' is a length [m]; give a speed [m/s] such as 2 mm/s",
     "fl.Coulomb(mu='0.4')": "Coulomb: mu: must be a number, got the text '0.4' (remove the quotes)",
     "SCENE.with_(normal_load=-3)": "Scene: normal_load: must be > 0, got -3",
     "fl.Scene(**GIVEN, initail={'x': 1})": "Scene: initail: unknown key; allowed: damping_ratio, spring, "
@@ -61,7 +65,7 @@ SAID = {
     "frictionlab-certified brings",
     "fl.curve(SCENE, LAW, np.ones((2, 2)))": f"{NUMBERS} an array of shape (2, 2)",
     "fl.compare(SCENE, LAW, pd.DataFrame({'speed': [1.0]}))": f"{NUMBERS} DataFrame of shape (1, 1)",
-    "fl.curve(SCENE, LAW, {'stop': 2})": f"{NUMBERS} a mapping; fl.compare and fl.sweep take ranges",
+    "fl.curve(SCENE, LAW, {'stop': 2})": "belt_speed: start: required key is missing\nbelt_speed: num: required key is missing",
     "fl.curve(SCENE, LAW, [])": f"{NUMBERS} none",
     "fl.curve(SCENE, LAW, ['1'])": f"{NUMBERS} the text '1' (remove the quotes) at [0]",
     "fl.curve(SCENE, LAW, [True])": f"{NUMBERS} True at [0]",
@@ -96,6 +100,22 @@ def test_a_law_says_in_python_what_a_study_says_of_it(path: str, value: Any) -> 
     told = [(f"laws[0].{one.path}", one.what, one.hint) for one in in_python.value.mistakes]
     said = {(one.path, one.what.replace(" .inf", " inf"), one.hint) for one in in_study.value.mistakes}
     assert {(path, what, hint.replace(SEVERAL, "")) for path, what, hint in told} == said
+
+
+def test_numbers_may_have_units_or_be_of_no_dimension_in_python() -> None:
+    given, law = [0.05, 0.1, 0.15], fl.Dahl(mu=np.array(0.4), presliding_length="1 um")
+    usual = fl.curve(SI, law, given)["mean_friction"].tolist()
+
+    for speeds in (["5 cm/s", "0.1 m/s", 0.15], {"start": "50 mm/s", "stop": "0.15 m/s", "num": 3}):
+        assert fl.curve(SI, law, speeds)["mean_friction"].tolist() == pytest.approx(usual, rel=1e-12)
+        assert fl.compare(SI, law, speeds).table["mean_friction"].tolist() == pytest.approx(usual, rel=1e-12)
+    state = fl.steady_state(SI, law)
+    assert state.si.mean_friction == state.si["mean_friction_N"]
+    assert f"mean_friction {state.si.mean_friction:.6g} N" in repr(state.si)
+    assert {"period", "velocity_amplitude"} <= {*dir(state.si)}
+    with pytest.raises(AttributeError, match="no result 'speed' in SI units; there are mean_friction"):
+        state.si.speed  # noqa: B018
+    assert fl.LuGre(mu=0.3, stiffness=1e5, damping=0) == fl.LuGre(mu_kinetic=0.3, stiffness=1e5, damping=0)
 
 
 def test_numbers_of_numpy_and_pandas_are_taken_for_what_they_are() -> None:

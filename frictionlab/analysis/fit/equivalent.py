@@ -188,7 +188,7 @@ def _nearest(
             )
         speeds = np.linspace(end / USUAL_POINTS, end, USUAL_POINTS)
     else:
-        speeds = np.unique(given_speeds(belt_speed))
+        speeds = np.unique(given_speeds(belt_speed, scene))
     target = curve(scene, law, speeds, "auto", FIT_TOLERANCE, columns=["mean_friction"], progress=False)
     if target["mean_friction"].isna().any():
         row = target[target["mean_friction"].isna()].iloc[0]

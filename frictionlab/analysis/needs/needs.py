@@ -306,7 +306,7 @@ def needs(
     scene, law = given_scene(scene), given_law(law)
     si = scene.dimensional
     own = scene.belt_speed if si is None else si.belt_speed_m_per_s
-    scenes = Scenes(scene, np.unique(given_speeds(own if belt_speed is None else belt_speed)))
+    scenes = Scenes(scene, np.unique(given_speeds(own if belt_speed is None else belt_speed, scene)))
     asked = _Asked(speed=units_written({"": own}).get(""))
     tolerance = None if within is None else given_tolerance(within, "within")
     with progress_told(progress, "taking parts away", ""):

@@ -46,11 +46,30 @@ def files_of(law: type) -> set[str]:
     return {file for file in files if file is not None}
 
 
-def describe_error(problem: BaseException, files: Collection[str]) -> str:
-    """Return type and message of an error, and the innermost line of these files in its traceback."""
+def describe_error(problem: BaseException, files: Collection[str], asked: bool = False) -> str:
+    """Return type and message of an error, and the innermost line of these files in its traceback.
+
+    asked: whether the call of the function of that line is told.
+    """
     if isinstance(problem, SyntaxError) and problem.filename:
         return f"SyntaxError: {problem.msg}{source_line(problem.filename, problem.lineno or 1)}"
-    return text_of_error(problem) + (innermost_line(problem, files) or "")
+    call = _numbers_asked(problem, files) if asked else ""
+    return f"{text_of_error(problem)}{call}{innermost_line(problem, files) or ''}"
+
+
+def _numbers_asked(problem: BaseException, files: Collection[str]) -> str:
+    """Return the function of these files that raised an error, with the numbers it was called with."""
+    frames = [
+        each for each, _ in traceback.walk_tb(problem.__traceback__) if each.f_code.co_filename in files
+    ]
+    code = frames[-1].f_code if frames else None
+    told = (
+        []
+        if code is None
+        else [(name, frames[-1].f_locals.get(name)) for name in code.co_varnames[: code.co_argcount]]
+    )
+    numbers = [f"{name}={value:g}" for name, value in told if isinstance(value, float | complex)]
+    return f" in {code.co_name}({', '.join(numbers)})" if code is not None and numbers else ""
 
 
 def text_of_error(problem: BaseException) -> str:

@@ -6,6 +6,7 @@ Trial calls of a law of another package before it is used, interpreted.
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from importlib.metadata import EntryPoint
@@ -236,6 +237,10 @@ def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
         what = f"needs '{problem.name}', which is not installed{innermost_line(problem, files) or ''}"
         remedy = f"install it, or remove the import: pip install {problem.name.partition('.')[0]}"
         return home._replace(remedy=remedy).broken(what, problem)
+    if found := re.match(r"A non-annotated attribute was detected: `(\w+) = (.+?)`", str(problem)):
+        name, value = found.groups()
+        what = f"{name} = {value} has no type: write {name}: fl.Positive = {value}"
+        return home.broken(f"{what}{innermost_line(problem, files) or ''}", problem)
     return home.broken(f"cannot be loaded: {describe_error(problem, files)}", problem)
 
 

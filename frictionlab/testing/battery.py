@@ -80,9 +80,18 @@ def _outcome(
     if uncompiled and check.patience > 1.0:
         return Outcome(check.name, "skipped", 0, f"{uncompiled[0]} failed: the law cannot be compiled")
     outcome = run_check(check, law, *most)
+    same = [each.check for each in before if _cause(each) and _cause(each) == _cause(outcome)]
+    if same:
+        outcome = replace(outcome, counterexample=f"the same error as in {same[0]}")
     if expected is None:
         return outcome
     if outcome.result == "failed":
         return replace(outcome, result="expected failure", reason=expected)
     unmet = f"expected to fail ({expected}), but {outcome.result}: take it out of expected_failures"
     return replace(outcome, result="failed", counterexample=unmet)
+
+
+def _cause(outcome: Outcome) -> str:
+    """Return the line of a law that raised an error; '' of any other result."""
+    line = outcome.counterexample.partition("; seen with")[0].partition("\n")[2]
+    return line.strip()

@@ -207,15 +207,17 @@ def _problem(
         what = f"no answer within {seconds:g} s; does a method of the law never return?"
         return _described(what, counted, "let every loop of its methods end")
     except Exception as problem:
-        return _described(_describe_failure(problem, law), counted, _change(check, problem))
+        return _described(_describe_failure(problem, law), counted, _change(check, problem, law))
     return None
 
 
-def _change(check: Check, problem: Exception) -> str:
+def _change(check: Check, problem: Exception, law: type[FrictionLaw]) -> str:
     if isinstance(problem, Violation):
         return check.change
     if isinstance(problem, NoParameters):
         return "widen the bounds of the parameters, or take fewer together for a mistake"
+    if isinstance(problem, ArithmeticError | ValueError) and "=0)" in describe_error(problem, _files(law), asked=True):
+        return "let that line hold at 0, too: a body that sticks does not slip"
     return "correct that line, or bound the parameters: Annotated[fl.Positive, Field(le=10)]"
 
 
@@ -243,5 +245,9 @@ def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:
     """Return the message of a violation; of any other exception also the line of the law that raised it."""
     if isinstance(problem, AssertionError):
         return str(problem)
+    return describe_error(problem, _files(law), asked=True)
+
+
+def _files(law: type[FrictionLaw]) -> set[str]:
     files = {getattr(sys.modules.get(kind.__module__), "__file__", None) for kind in law.__mro__[:-1]}
-    return describe_error(problem, {file for file in files if file is not None and "pydantic" not in file})
+    return {file for file in files if file is not None and "pydantic" not in file}

@@ -65,7 +65,8 @@ SAID = {
     "frictionlab-certified brings",
     "fl.curve(SCENE, LAW, np.ones((2, 2)))": f"{NUMBERS} an array of shape (2, 2)",
     "fl.compare(SCENE, LAW, pd.DataFrame({'speed': [1.0]}))": f"{NUMBERS} DataFrame of shape (1, 1)",
-    "fl.curve(SCENE, LAW, {'stop': 2})": "belt_speed: start: required key is missing\nbelt_speed: num: required key is missing",
+    "fl.curve(SCENE, LAW, {'stop': 2})": "belt_speed: start: required key is missing\n"
+    "belt_speed: num: required key is missing",
     "fl.curve(SCENE, LAW, [])": f"{NUMBERS} none",
     "fl.curve(SCENE, LAW, ['1'])": f"{NUMBERS} the text '1' (remove the quotes) at [0]",
     "fl.curve(SCENE, LAW, [True])": f"{NUMBERS} True at [0]",

@@ -127,6 +127,10 @@ BROKEN = {
         {RETURN: "return self.mu\n\n    def monotone(self):\n        return 1.0"},
         "monotone() returns 1.0, which is no True or False\n  {file}:14: def monotone(self):",
     ),
+    "a parameter without a type": (
+        {MU: "    mu = 0.4\n"},
+        "mu = 0.4 has no type: write mu: fl.Positive = 0.4\n  {file}:",
+    ),
     "raises in a method": (
         {RETURN: "return self.muu"},
         "sliding_friction(speed=1.0) raises AttributeError: 'Good' object has no attribute 'muu'\n  {file}:12:",

@@ -252,6 +252,26 @@ class NotForNumba(Plain):
         return 0.5 * self.mu
 
 
+class NotAtRest(Plain):
+    """Friction that rises with the logarithm of speed, which has no value at rest.
+
+    mu [-], > 0: friction coefficient.
+    Source: nobody (1900).
+    """
+
+    def sliding_friction(self, speed: float) -> float:
+        return self.mu * (1.0 + 0.01 * math.log10(speed))
+
+
+def test_an_error_is_told_once_with_the_number_that_raised_it() -> None:
+    report = check_law(NotAtRest, only=["extremes", "static_friction"], examples=2, on_failure="return")
+    first, other = (outcome.counterexample for outcome in report.outcomes)
+
+    assert first.startswith("ValueError: math domain error in sliding_friction(speed=0)\n")
+    assert first.endswith("to change: let that line hold at 0, too: a body that sticks does not slip")
+    assert other == "the same error as in extremes"
+
+
 def test_a_law_that_cannot_be_compiled_is_told_once() -> None:
     only = ["compiled_on_the_line", "compiled_in_the_plane", "two_methods"]
     report = check_law(NotForNumba, only=only, examples=2, on_failure="return")

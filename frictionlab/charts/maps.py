@@ -91,7 +91,7 @@ class MapFigure:
 
     def draw(self, heading: Heading = NO_HEADING) -> Figure:
         """Return the figure, with matplotlib's settings as they are."""
-        wide = abreast(len(self.pictures), heading)
+        wide = abreast(len(self.pictures), heading, len(self.columns))
         each = -(-len(self.pictures) // wide) * wide  # a column begins on a line of its own
         sheet = Sheet.blank(each * len(self.columns), heading, self._entries())
         for number, column in enumerate(self.columns):

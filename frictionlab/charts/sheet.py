@@ -68,6 +68,8 @@ def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "p
 
 
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
+HIGHEST = 235.0 / 25.4  # of a figure whose width is asked for [inch]
+MOST_BELOW = 4  # pictures one below the other in a column of a journal
 LEGEND_FONT = 7  # [point]
 HANDLE = 3.5  # length of a sample of a line, long enough for its dashes [letter]
 TYPED = {"V_lin": r"$V_\mathrm{lin}$", "Omega": "Ω"}
@@ -92,12 +94,13 @@ NO_HEADING = Heading()
 
 
 class Sheet(NamedTuple):
-    """A figure and how many pictures it has above each other and side by side."""
+    """Figure and how many pictures it has above each other and side by side. limited: to the height of a page."""
 
     figure: Figure
     high: int
     wide: int
     own: Axes | None = None
+    limited: bool = False
 
     @classmethod
     def blank(
@@ -119,7 +122,7 @@ class Sheet(NamedTuple):
         high = -(-pictures // wide)
         figure = blank_figure(PAGE if double else COLUMN, high * height)
         figure.set_figheight(high * height + LINE * write_title(figure, heading))
-        sheet = cls(figure, high, wide)
+        sheet = cls(figure, high, wide, limited=heading.width is not None)
         sheet.add_legend(entries, about)
         return sheet
 
@@ -140,7 +143,8 @@ class Sheet(NamedTuple):
                 self.own.legend(handles=entries, title=about, handlelength=HANDLE)
             return
         lines = _add_legend(self.figure, entries, about)
-        self.figure.set_figheight(self.figure.get_figheight() + LINE * lines)
+        height = self.figure.get_figheight() + LINE * lines
+        self.figure.set_figheight(min(height, HIGHEST) if self.limited else height)
 
     def axes(self, place: int) -> Axes:
         """Those of the picture at this place, from 0, row by row."""
@@ -162,9 +166,9 @@ class Sheet(NamedTuple):
                 axes.yaxis.label.set_visible(False)
 
 
-def abreast(pictures: int, heading: Heading) -> int:
-    """Return how many pictures stand side by side."""
-    return 1 if heading.width == "single" else min(2, pictures)
+def abreast(pictures: int, heading: Heading, rounds: int = 1) -> int:
+    """Return how many pictures stand side by side. rounds: how often there are so many, one below the other."""
+    return (1 if pictures * rounds <= MOST_BELOW else 2) if heading.width == "single" else min(2, pictures)
 
 
 def write_title(figure: Figure, heading: Heading) -> int:
@@ -181,11 +185,15 @@ def write_title(figure: Figure, heading: Heading) -> int:
 
 def write_heading(axes: Axes, words: str, width: float, pad: float | None = None) -> None:
     """Write above a picture what it is of, in lines that fit its width [point]; pad: the room below it [point]."""
-    lines, size = [""], float(axes.title.get_fontsize())
-    for part in words.split(", "):
+    size, lines = float(axes.title.get_fontsize()), [""]
+
+    def fits(text: str) -> bool:
+        return text_width(axes.figure, text, size) <= width
+
+    parts = [part if fits(part) else part.replace(" $", "\n$", 1) for part in words.split(", ")]
+    for part in parts:
         longer = f"{lines[-1]}, {part}" if lines[-1] else part
-        fits = not lines[-1] or text_width(axes.figure, longer, size) <= width
-        lines = [*lines[:-1], longer] if fits else [*lines, part]
+        lines = [*lines[:-1], longer] if not lines[-1] or fits(longer) else [*lines, part]
     axes.set_title(",\n".join(lines), loc="left", pad=pad)
 
 

@@ -216,7 +216,9 @@ def _change(check: Check, problem: Exception, law: type[FrictionLaw]) -> str:
         return check.change
     if isinstance(problem, NoParameters):
         return "widen the bounds of the parameters, or take fewer together for a mistake"
-    if isinstance(problem, ArithmeticError | ValueError) and "=0)" in describe_error(problem, _files(law), asked=True):
+    if isinstance(problem, ArithmeticError | ValueError) and "=0)" in describe_error(
+        problem, _files(law), asked=True
+    ):
         return "let that line hold at 0, too: a body that sticks does not slip"
     return "correct that line, or bound the parameters: Annotated[fl.Positive, Field(le=10)]"
 

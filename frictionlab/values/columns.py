@@ -552,7 +552,13 @@ def symbol(name: str) -> str:
     entry = _entry(name)
     if not entry:
         return without_shown_unit(name).rpartition(".")[2].replace("_", " ")
-    return f"${entry[1]}$" if entry[1] else entry[0]
+    cycles = next((letter for unit, letter in _CYCLES.items() if unit in name.partition(SHOWN_IN)[2]), None)
+    letters = entry[1].replace(r"\omega", cycles) if cycles else entry[1]
+    return f"${letters}$" if letters else entry[0]
+
+
+_CYCLES = {"Hz": "f", "rpm": "n"}
+"""Symbols of frequencies in units that count cycles, in place of omega."""
 
 
 def unit_shown(name: str) -> str:

@@ -105,6 +105,20 @@ def test_stick_is_a_band_along_the_points_where_it_is(laws: pd.DataFrame) -> Non
     assert "stick" not in " ".join(legend_of(_drawn(sticky)))
 
 
+def test_a_figure_of_many_pictures_is_no_higher_than_a_page(laws: pd.DataFrame) -> None:
+    loads = [
+        laws.assign(**{"scene.normal_load": load, "scene.damping_ratio": 0.1 * load})
+        for load in (1.0, 2.0, 3.0)
+    ]
+    figure = _drawn(pd.concat(loads, ignore_index=True), width="single")
+
+    assert len(figure.axes) > 4
+    assert figure.get_figheight() * 25.4 <= 240.0
+    figure.draw_without_rendering()
+    boxes = [axes._left_title.get_window_extent() for axes in figure.axes]  # type: ignore[attr-defined]
+    assert not any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k] if one.width)
+
+
 @pytest.mark.parametrize(("width", "millimetres"), [("single", 85.0), ("double", 175.0)])
 def test_widths_are_those_of_a_journal(laws: pd.DataFrame, width: str, millimetres: float) -> None:
     assert _drawn(laws, width=width).get_figwidth() * 25.4 == pytest.approx(millimetres)

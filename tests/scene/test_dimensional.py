@@ -439,6 +439,11 @@ def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:
     from frictionlab.values.columns import word
     from frictionlab.values.validation import number_paths
 
+    frequency = "scene.dimensional.natural_frequency_rad_per_s"
+    assert [word(f"{frequency}{unit}") for unit in ("", " in kHz", " in rpm")] == [
+        f"natural frequency ${letter}_1$ [{unit}]"
+        for letter, unit in ((r"\omega", "rad/s"), ("f", "kHz"), ("n", "rpm"))
+    ]
     starts, without_unit = "initial.", ("frequency_ratio", "variation.amplitude", "damping_ratio", ".order")
     for path in number_paths(Dimensional):
         if path.endswith(without_unit):

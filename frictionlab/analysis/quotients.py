@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.runner.table import cells
 from frictionlab.scene.scene import Scene
 from frictionlab.values.notes import did_you_mean
 from frictionlab.values.quantities import Floats, given_values
@@ -60,15 +61,6 @@ def asked_for(numbers: dict[str, float], paths: Any) -> list[str]:
                 f"parameters: no number '{path}' of this scene or law{f'; {hint}' if hint else ''}"
             )
     return list(dict.fromkeys(paths))
-
-
-def cells(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values by name, several numbers as ``name[0]``, ``name[1]``."""
-    cells: dict[str, Any] = {}
-    for name, value in values.items():
-        several = enumerate(value) if isinstance(value, tuple) else ()
-        cells |= {f"{name}[{k}]": each for k, each in several} or {name: value}
-    return cells
 
 
 INSTEAD = [

@@ -97,7 +97,7 @@ def slice_of(rows: range, first: int = 0) -> slice:
 def _scaled(curve: StudyCurve) -> dict[str, Any]:
     """Return the parameters of its law that were given in SI units in the scales of the scene."""
     si = curve.scenes.scene.dimensional
-    return {} if si is None else _cells(scaled_parameters(curve.given_law, si.scales))
+    return {} if si is None else cells(scaled_parameters(curve.given_law, si.scales))
 
 
 def _scales(curves: Sequence[StudyCurve], where: list[slice], size: int) -> dict[str, Floats] | None:
@@ -108,18 +108,16 @@ def _scales(curves: Sequence[StudyCurve], where: list[slice], size: int) -> dict
 
 
 def _values(law: FrictionLaw) -> dict[str, Any]:
-    return _cells(law.model_dump(exclude_none=True, mode="json"))
+    return cells(law.model_dump(exclude_none=True, mode="json"))
 
 
-def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Values in cells: several numbers go to separate cells, ``mu[0]``, ``mu[1]``."""
-    cells: dict[str, Any] = {}
+def cells(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values by name; several numbers go to separate cells, ``mu[0]``, ``mu[1]``."""
+    found: dict[str, Any] = {}
     for name, value in values.items():
-        several = (
-            {f"{name}[{k}]": each for k, each in enumerate(value)} if isinstance(value, list | tuple) else {}
-        )
-        cells |= several or {name: value}
-    return cells
+        several = enumerate(value) if isinstance(value, list | tuple) else ()
+        found |= {f"{name}[{k}]": each for k, each in several} or {name: value}
+    return found
 
 
 def _kinds(records: list[dict[str, Any]]) -> dict[str, bool]:

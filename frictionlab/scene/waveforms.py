@@ -48,7 +48,6 @@ class WaveShape(NamedTuple):
     share: Fraction = Fraction(1, 2)
 
 
-_RISES = "rises evenly from -1 to 1, through 0 at theta = 0; jumps at theta = pi"
 WAVE_SHAPES = {
     "sine": WaveShape("sin(theta)", "a sine"),
     "square": WaveShape("1 in the first half of the period, -1 in the second", "a square wave", "square"),

@@ -379,16 +379,6 @@ class Notes:
             self.add(path, f"must be > 0, got {value_text(value)}")
         return number
 
-    def whole_number(self, value: Any, path: KeyPath, least: int) -> int | None:
-        """Return the value as a whole number of at least ``least``; None, noted, if it is not one."""
-        if isinstance(value, bool) or not isinstance(value, int):
-            self.add(path, f"must be a whole number >= {least}, got {value_text(value)}")
-        elif value < least:
-            self.add(path, f"must be >= {least}, got {value}")
-        else:
-            return value
-        return None
-
     def text(self, value: Any, path: KeyPath) -> str:
         """Return the value as text; empty, noted, if it is not text."""
         if isinstance(value, str):

@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from frictionlab.analysis.quotients import cells, with_numbers
+from frictionlab.analysis.quotients import with_numbers
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.runner.table import cells
 from frictionlab.scene.dimensional import unit_of
 from frictionlab.scene.scene import Scene
 from frictionlab.study.keys import StudyKeys, range_in_numbers

@@ -19,8 +19,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
@@ -159,14 +157,6 @@ measure_yield = by_law(
 """measure_yield(law, work, zero): fill the radius of each yield surface, 0 for none, and ``unloads``. That is
 1 for a deflection without a yield surface that follows every slip which makes it smaller. On the line a
 reversal of slip takes its place."""
-
-
-_by_direction = by_dimension(
-    lambda law, zero: np.zeros(law.count()), lambda law, zero: np.zeros(law.count(), np.complex128)
-)
-
-memory_of = by_scalars(lambda law, zero: _by_direction(law, zero), lambda law, zero: np.zeros(law.count()))
-"""memory_of(law, zero): array for the memory of a law, at zero."""
 
 
 # --- scales ---------------------------------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 """Looks by which the curves of a figure differ, in colour and in grey print, and its legend.
 
 Laws differ in colour and in dashes; where there is one law, so do the words of a sweep, else the methods. A swept
-number runs from dark to light within a colour, with a marker for each value. What is left has markers.
+number runs from dark to light within a colour, with a marker for each value. Of one law at several values by a few
+methods, colour is the value and dashes are the method. What is left has markers.
 
 How dark a colour is, as WCAG 2 measures it, and colours of one hue that are as dark as asked for.
 """
@@ -89,8 +90,16 @@ class Looks:
 
     def color(self, curve: CurveData) -> tuple[float, float, float]:
         """Return the colour of what sets it, from dark to light along a swept number."""
+        if self.of_values:
+            return to_rgb(CYCLE[curve.place[1]]["color"])
         color = self.cycle(curve)["color"]
         return to_rgb(color) if self.sizes[1] == 1 or self._words else self.shade(color, curve.place[1])
+
+    @property
+    def of_values(self) -> bool:
+        """Check whether colour is the swept value and dashes are the method."""
+        laws, members, methods = self.sizes
+        return laws == 1 and 1 < methods <= MOST_BY_DASHES and 1 < members <= len(CYCLE)
 
     def shade(self, color: str, member: int) -> tuple[float, float, float]:
         """Return the colour for the swept value at this place, from dark to light."""
@@ -99,7 +108,7 @@ class Looks:
     def cycle(self, curve: CurveData) -> dict[str, Any]:
         """Colour and dashes of what sets them."""
         law, member, method = curve.place
-        place = law if self.sizes[0] > 1 else member if self._words else method
+        place = law if self.sizes[0] > 1 else member if self._words and not self.of_values else method
         return CYCLE[place % len(CYCLE)]
 
     def marked(self, y: NDArray[np.float64], curve: CurveData) -> list[int]:
@@ -138,13 +147,13 @@ class Looks:
     @property
     def words_or_signs(self) -> bool:
         """Check whether a swept value has no shade or no marker of its own."""
-        return self._words or self._methods_have_markers
+        return (self._words and not self.of_values) or self._methods_have_markers
 
     @property
     def _methods_have_markers(self) -> bool:
         """Check whether neither colour and dashes tell methods apart, or they are many."""
         laws, _, methods = self.sizes
-        return methods > MOST_BY_DASHES or (methods > 1 and (laws > 1 or self._words))
+        return methods > MOST_BY_DASHES or (methods > 1 and not self.of_values and (laws > 1 or self._words))
 
     @property
     def _has_signs(self) -> bool:
@@ -175,16 +184,19 @@ def _apart(looks: Looks, curves: Sequence[CurveData]) -> list[Line2D]:
     lines = {(curve.law, curve.method, curve.same): curve for curve in curves}
     valued = [curve for curve in curves if curve.member is not None and curve.member.value is not None]
     values = {curve.place[1]: curve for curve in valued}
-    if looks.words_or_signs or len(lines) + len(values) >= len(curves):
+    longer = len(lines) + len(values) - len(curves)
+    if looks.words_or_signs or longer > 0 or (longer == 0 and not looks.of_values):
         return []
     entries = []
     for curve in lines.values():
-        look = looks.line(curve) | {"marker": "", "color": looks.cycle(curve)["color"]}
+        color = "0.3" if looks.of_values else looks.cycle(curve)["color"]
+        look = looks.line(curve) | {"marker": "", "color": color}
         methods = (curve.method, *curve.same) if looks.sizes[2] > 1 or curve.same else ()
         entries.append(Line2D([], [], label=", ".join(_names(looks, curve, methods)), **look))
     for at, (place, curve) in enumerate(sorted(values.items())):
         assert curve.member is not None
-        look = looks.line(curve) | {"linestyle": "none", "color": looks.shade("0.5", place)}
+        color = looks.color(curve) if looks.of_values else looks.shade("0.5", place)
+        look = looks.line(curve) | {"linestyle": "none", "color": color}
         entries.append(Line2D([], [], label=curve.member.text if at else curve.member.sentence, **look))
     return entries
 

@@ -128,6 +128,20 @@ def test_laws_are_of_different_grey(resonance: pd.DataFrame) -> None:
     assert len({str(line._unscaled_dash_pattern) for line in lines}) == 4
 
 
+def test_of_one_law_colour_is_the_value_and_dashes_are_the_method() -> None:
+    table = table_of_one_degree_of_freedom()
+    figure = _figure(_joined([table, _other(table, "mdsm")]))
+    lines = figure.axes[0].lines[:4]
+    colors = {line.get_color() for line in lines}
+    dashes = {str(line._unscaled_dash_pattern) for line in lines}
+    methods, values = figure.legends[0].get_lines()[:2], figure.legends[0].get_lines()[2:]
+
+    assert legend_of(figure) == ["auto", "mdsm", r"drive frequency $\Omega$ = 1", "1.5"]
+    assert len(colors) == len(dashes) == 2
+    assert {str(line._unscaled_dash_pattern) for line in methods} == dashes
+    assert {line.get_color() for line in values} == colors
+
+
 def test_methods_whose_curves_are_one_line_are_drawn_once(resonance: pd.DataFrame) -> None:
     far, near = _other(resonance, "mdsm"), _other(resonance, "shooting", 1e-9)
     table = _joined([resonance, near.assign(error=1e-8), far])

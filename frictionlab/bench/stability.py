@@ -1,78 +1,34 @@
-"""The section of a bench list that maps one stepper or peer, and what it comes to."""
+"""Stability maps of a bench list: error of one stepper or peer over step, or tolerance, and local rate."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from functools import partial
+from typing import Annotated, Any
 
+import numpy as np
+import pandas as pd
 from pydantic import Field
 
-from frictionlab.bench.record import FILLED, SectionResult, cell, one_of
-from frictionlab.bench.stability_grid import PROBLEMS, MappedSolver, StabilityMap, StabilityProblem
-from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS
+from frictionlab.bench.charts import LimitOfSteps, StabilityPicture, stability_figure
+from frictionlab.bench.contenders import FILLED
+from frictionlab.bench.result import SectionResult, Tell, one_of
+from frictionlab.bench.stability_problems import PROBLEMS, StabilityProblem
+from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS, REGIONS, MappedSolver, MapPoint
 from frictionlab.values.quantities import Record
 
-STABILITY_CAPTION = (
+STEPS, TOLERANCES, RATES = (8.0, 4096.0), (1e-9, 1e-1), (1.0, 1e3)
+"""Ends of the grid."""
+CAPTION = (
     "Colour is the true error of the mean friction at each step (or tolerance) and local rate; hatched: wrong, and "
     "told so (refused, failed, or within the error stated), crosses: wrong without a word; red: where the step taken "
     "times the rate is at (adaptive: near) its limit, dashed as predicted, dots as measured. Integrated: {what}."
 )
-
-
-@dataclass(frozen=True)
-class StabilityResult(SectionResult):
-    """The maps of one stepper or peer, one a problem; none where it is left out."""
-
-    name: str
-    title: str
-    caption: str
-    maps: Sequence[StabilityMap]
-    left_out: Mapping[str, str] | None = None
-
-    style: ClassVar[Mapping[str, Any]] = {"hatch.linewidth": 0.5, "savefig.dpi": 200}
-
-    def records(self) -> list[dict[str, Any]]:
-        """The points of every map, with the limits."""
-        return [record for each in self.maps for record in _records(each)]
-
-    def summary(self) -> str:
-        """A line a problem: regions counted, limits predicted and measured."""
-        lines = [_line(self.name, each) for each in self.maps]
-        return "\n".join(lines or [f"{name}: {why}" for name, why in (self.left_out or {}).items()])
-
-
-def _line(name: str, drawn: StabilityMap) -> str:
-    counts = ", ".join(f"{n} {region.replace('_', ' ')}" for region, n in drawn.counts().items())
-    limit = drawn.limit
-    bound = (
-        f"step*rate at most {limit.measured:.3f} (predicted {limit.predicted:.3f})"
-        if math.isfinite(limit.predicted) or math.isfinite(limit.measured)
-        else "no step is too long"
-    )
-    return f"{name}, {drawn.problem.name}: {len(drawn.points)} points: {counts}; {bound}"
-
-
-def _records(drawn: StabilityMap) -> Iterator[dict[str, Any]]:
-    """The points as the CSV holds them; empty where there is no number, or no limit."""
-    limit = drawn.limit
-    for point in drawn.points:
-        yield {
-            "problem": drawn.problem.name,
-            "setting": drawn.setting,
-            "value": point.value,
-            "rate": point.rate,
-            "step": cell(point.step),
-            "step_times_rate": cell(point.step * point.rate),
-            "predicted_limit": cell(limit.predicted),
-            "measured_limit": cell(limit.measured),
-            "status": point.status,
-            "error": cell(point.error),
-            "stated": cell(point.stated),
-            "region": point.region,
-            "reason": point.reason,
-        }
+COLUMNS = [
+    *("problem", "setting", "value", "rate", "step", "step_times_rate", "predicted_limit", "measured_limit"),
+    *("status", "error", "stated", "region", "reason"),
+]
 
 
 @dataclass(frozen=True)
@@ -88,16 +44,61 @@ class StabilitySection:
         """That of its files."""
         return f"stability_{self.mapped.name}"
 
-    def measure(self, tell: Callable[[str], None]) -> StabilityResult:
+    def measure(self, tell: Tell) -> SectionResult:
         """Map every problem that it can take."""
-        missing, maps = self.mapped.missing(), list[StabilityMap]()
-        for problem in self.problems if not missing else ():
+        missing, maps = self.mapped.missing(), list[StabilityPicture]()
+        for problem in () if missing else self.problems:
             if problem.name in self.mapped.problems:
                 tell(f"{self.name}: {problem.name}")
-                maps.append(self.mapped.map_of(problem, self.grid))
-        left_out = None if maps else {self.name: missing or "takes none of these problems"}
-        caption = STABILITY_CAPTION.format(what=self.mapped.integrated)
-        return StabilityResult(self.name, f"Stability of {self.mapped.name}", caption, maps, left_out)
+                maps.append(self._map(problem))
+        left_out = {} if maps else {self.name: missing or "takes none of these problems"}
+        table = pd.concat([each.points for each in maps])[COLUMNS] if maps else pd.DataFrame()
+        title = f"Stability of {self.mapped.name}"
+        return SectionResult(
+            self.name,
+            title,
+            table.replace([math.inf, -math.inf], math.nan),
+            "\n".join([f"{self.name}, {line(each)}" for each in maps] or [": ".join(*left_out.items())]),
+            partial(stability_figure, title, maps),
+            CAPTION.format(what=self.mapped.integrated),
+            left_out=left_out,
+            style={"hatch.linewidth": 0.5, "savefig.dpi": 200},
+        )
+
+    def _map(self, problem: StabilityProblem) -> StabilityPicture:
+        mapped, rates = self.mapped, np.geomspace(*RATES, self.grid)
+        settings = np.geomspace(*(STEPS if mapped.setting == "steps" else TOLERANCES), self.grid)
+        if mapped.setting == "steps":  # each once
+            settings = np.unique(np.round(settings))
+        points = [mapped.point(problem, rate, at) for rate in rates.tolist() for at in settings.tolist()]
+        return StabilityPicture(
+            problem.title,
+            problem.rate_text,
+            table_of_points(problem.name, mapped.setting, points, limit := mapped.limit(problem.memory)),
+            limit,
+        )
+
+
+def table_of_points(problem: str, setting: str, points: list[MapPoint], limit: LimitOfSteps) -> pd.DataFrame:
+    """A row for each point, with the limits of its step."""
+    table = pd.DataFrame(points).assign(region=[point.region for point in points])
+    return table.assign(
+        problem=problem,
+        setting=setting,
+        step_times_rate=table["step"] * table["rate"],
+        predicted_limit=limit.predicted,
+        measured_limit=limit.measured,
+    )
+
+
+def line(drawn: StabilityPicture) -> str:
+    """Regions counted, limits predicted and measured."""
+    found, limit = drawn.points["region"].value_counts(), drawn.limit
+    counts = ", ".join(f"{found.get(region, 0)} {region.replace('_', ' ')}" for region in REGIONS)
+    bound = f"step*rate at most {limit.measured:.3f} (predicted {limit.predicted:.3f})"
+    if math.isinf(limit.predicted) and math.isinf(limit.measured):
+        bound = "no step is too long"
+    return f"{drawn.points['problem'].iloc[0]}: {len(drawn.points)} points: {counts}; {bound}"
 
 
 class StabilityMaps(Record):

@@ -12,9 +12,8 @@ from pages import Page
 from profiles import deep
 
 from frictionlab import bench, cli
-from frictionlab.bench import account
-from frictionlab.bench.account import MOST_ROWS_ON_PAGE, bench_page, circumstances, small_print
-from frictionlab.bench.curve import CurveResult
+from frictionlab.bench import page as pages
+from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page, circumstances, small_print
 from frictionlab.bench.peers import base
 from frictionlab.methods.reduced import common
 
@@ -138,7 +137,7 @@ def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pyte
 
 def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Path, page: Page) -> None:
     told = circumstances()
-    small = small_print()
+    small = small_print(told)
 
     assert told["date"] in small
     assert f"numba {told['packages']['numba']}" in small
@@ -184,7 +183,7 @@ def test_what_was_measured_before_stays_on_the_page(tmp_path: Path) -> None:
 
 
 def test_of_a_long_table_the_first_rows_are_shown_and_the_file_is_named(folder: Path, tmp_path: Path) -> None:
-    parts = account.read_account(folder)
+    parts = pages.read_account(folder)
     head, *_ = (folder / "failures_mdsm.csv").read_text().splitlines()
     rows = [f"load,scene.normal_load,{i},1,1,ok,,,,,," for i in range(MOST_ROWS_ON_PAGE + 1)]
     (tmp_path / "failures_mdsm.csv").write_text("\n".join([head, *rows]))
@@ -226,6 +225,7 @@ def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.Cap
         "W1 dry: harmonic_balance, as is", "W1 dry: scipy, as is",
     ]  # fmt: skip
     assert [line.rpartition("(")[2] for line in lines] == [f"{n} of 5)" for n in range(1, 6)]
-    assert isinstance(found, CurveResult)
-    assert "| model alone, μs | its error alone, μs |" in found.markdown()
-    assert json.loads(json.dumps(account.entry_of(found, [], []))).keys() == account.ENTRY_KEYS
+    (name,) = pages.write_table(found, tmp_path)
+    text = (tmp_path / name).with_suffix(".md").read_text()
+    assert "| model alone, μs | its error alone, μs |" in text
+    assert json.loads(json.dumps(pages.entry_of(found, [], []))).keys() == pages.ENTRY_KEYS

@@ -1,0 +1,201 @@
+"""Methods and peers that a bench list names, a solver for each setting, and the references they are held against."""
+
+from __future__ import annotations
+
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, TypeVar
+
+import numpy as np
+import pandas as pd
+from pydantic import BeforeValidator, Field, model_validator
+
+from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.peers.equations import ScipyBristle, ScipySteps
+from frictionlab.bench.peers.heyoka_taylor import Heyoka
+from frictionlab.bench.peers.scipy_events import ScipyEvents
+from frictionlab.methods.base import Method
+from frictionlab.study.parts import method_choice
+from frictionlab.values.notes import Notes, dotted
+from frictionlab.values.quantities import Positive, Record
+from frictionlab.values.validation import build_record
+
+PEERS: dict[str, type[Peer]] = {peer.name: peer for peer in (ScipySteps, ScipyEvents, ScipyBristle, Heyoka)}
+"""Other libraries by the names that a list gives them."""
+REFERENCE_COLUMNS = ["belt_speed", "mean_friction"]
+FOLDER = ContextVar("FOLDER", default=Path())
+"""Folder of the list that is read: files of reference values are relative to it."""
+AtLeastOne = Annotated[int, Field(strict=True, ge=1)]
+FILLED: Any = Field(min_length=1)
+_RecordT = TypeVar("_RecordT", bound=Record)
+
+
+class Setting(NamedTuple):
+    """A solver, the tolerance it is asked for, and the quantity that is varied with its value, '' where none is."""
+
+    quantity: str
+    value: float
+    tolerance: float
+    solver: Method | Peer
+
+    def __str__(self) -> str:
+        """``tolerance 1e-06``, or ``as is`` where nothing is varied."""
+        return f"{self.quantity} {self.value:g}" if self.quantity else "as is"
+
+
+class Contender(NamedTuple):
+    """A method or peer under one label, with its settings; points: of a curve, None for all."""
+
+    label: str
+    kind: str
+    settings: tuple[Setting, ...]
+    points: int | None
+
+    @property
+    def side(self) -> str:
+        """``peer`` for another library, else ``method``."""
+        return "peer" if isinstance(self.settings[0].solver, Peer) else "method"
+
+    def missing(self) -> str | None:
+        """Say how to install a peer that is not there."""
+        solver = self.settings[0].solver
+        return solver.missing() if isinstance(solver, Peer) else None
+
+
+class Reference(NamedTuple):
+    """A source of reference values: a method or peer at a tolerance, or means by belt speed, known to an error.
+
+    kind: of the method or peer, '' for values. tolerance: asked of the solver, or the error of the values.
+    """
+
+    label: str
+    kind: str
+    tolerance: float
+    solver: Method | Peer | None = None
+    values: pd.Series | None = None
+
+
+def built(kind: type[_RecordT], given: Any) -> _RecordT:
+    """Make a record of the keys given. Raises ValueError with the first mistake, ``path: what is wrong``."""
+    notes = Notes()
+    made = build_record(kind, given, (), notes)
+    refuse(notes)
+    assert made is not None
+    return made
+
+
+def refuse(notes: Notes) -> None:
+    """Raise ValueError with the first mistake that is noted."""
+    for note in notes.all:
+        raise ValueError(": ".join(filter(None, (dotted(note.path), note.what, note.hint))))
+
+
+class _Asked(Record):
+    """What a method or peer is asked for beside its own parameters."""
+
+    tolerance: Positive = 1e-8
+    points: AtLeastOne | None = None
+
+
+class _Closely(Record):
+    """Tolerance that a reference is solved to."""
+
+    tolerance: Positive
+
+
+class _ValuesOfFile(Record):
+    """Reference values from a file, relative to the list, and how well they are known."""
+
+    values: str
+    error: Positive
+    label: str = ""
+
+
+def _contender(given: Any, peers: bool) -> Contender:
+    """Read a method or peer of which one value may be a list, which is run through."""
+    told = {"kind": given} if isinstance(given, str) else given
+    if not isinstance(told, dict):
+        raise ValueError("must be a name or a mapping")
+    varied = [key for key, value in told.items() if isinstance(value, list) and key not in ("kind", "points")]
+    if len(varied) > 1:
+        raise ValueError(f"{varied[1]}: only one value may be a list, and {varied[0]} is one")
+    quantity = varied[0] if varied else ""
+    if varied and not told[quantity]:
+        raise ValueError(f"{quantity}: the list is empty; give at least one, such as [1.0e-6]")
+    cases = [(value, told | {quantity: value}) for value in told[quantity]] if varied else [(np.nan, told)]
+    settings = tuple(_setting(quantity, value, case, peers) for value, case in cases)
+    kind = str(told["kind"])
+    return Contender(str(told.get("label", kind)), kind, settings, told.get("points"))
+
+
+def _setting(quantity: str, value: float, told: dict[str, Any], peers: bool) -> Setting:
+    asked = {key: told[key] for key in _Asked.model_fields if key in told}
+    own = {key: told[key] for key in told if key not in asked}
+    return Setting(quantity, value, built(_Asked, asked).tolerance, _solver(own, peers))
+
+
+def _solver(told: dict[str, Any], peers: bool) -> Method | Peer:
+    """Make a method of these parameters, or a peer."""
+    notes = Notes()
+    if not peers:
+        if told.get("kind") == "auto":
+            raise ValueError("kind: auto only chooses: name the methods it chooses from")
+        choice = method_choice(told, (), notes)
+        refuse(notes)
+        assert choice is not None
+        return choice.method
+    name = notes.one_of(told.get("kind"), ("kind",), PEERS)
+    notes.text(told.get("label", ""), ("label",))
+    refuse(notes)
+    return built(PEERS[str(name)], {key: told[key] for key in told if key not in ("kind", "label")})
+
+
+def _reference(given: Any) -> Reference:
+    """Read a table of values, or a method or peer with the tolerance it is to be solved to."""
+    if not isinstance(given, dict):
+        raise ValueError("must be a mapping")
+    if "values" in given:
+        known = built(_ValuesOfFile, given)
+        return Reference(known.label or known.values, "", known.error, values=_table(known.values))
+    closely = built(_Closely, {key: given[key] for key in given if key == "tolerance"})
+    told = {key: value for key, value in given.items() if key != "tolerance"}
+    solver = _solver(told, peers=told.get("kind") in PEERS)
+    label = f"{told.get('label', solver.name)} at {closely.tolerance:g}"
+    return Reference(label, solver.name, closely.tolerance, solver)
+
+
+def _table(file: str) -> pd.Series:
+    """Mean friction by belt speed."""
+    try:
+        table = pd.read_csv(FOLDER.get() / file, dtype=str)[REFERENCE_COLUMNS].astype(float)
+    except (OSError, KeyError, ValueError) as problem:
+        named = " and ".join(REFERENCE_COLUMNS)
+        raise ValueError(
+            f"values: must be a CSV file of numbers with the columns {named}: {problem}"
+        ) from None
+    return table.set_index(REFERENCE_COLUMNS[0])[REFERENCE_COLUMNS[1]]
+
+
+AMethod = Annotated[Any, BeforeValidator(lambda given: _contender(given, peers=False))]
+APeer = Annotated[Any, BeforeValidator(lambda given: _contender(given, peers=True))]
+AReference = Annotated[Any, BeforeValidator(_reference)]
+
+
+class Measured(Record):
+    """Who is measured and against whom, of a list or of one of its blocks."""
+
+    references: tuple[AReference, ...] = ()
+    methods: Annotated[tuple[AMethod, ...], FILLED] = ()
+    peers: Annotated[tuple[APeer, ...], FILLED] = ()
+
+    @model_validator(mode="after")
+    def _labels_differ(self) -> Measured:
+        labels = [each.label for each in self.contenders]
+        if same := [label for label in labels if labels.count(label) > 1]:
+            raise ValueError(f"'{same[0]}' is there twice; give each its own label")
+        return self
+
+    @property
+    def contenders(self) -> tuple[Contender, ...]:
+        """Methods, then peers."""
+        return (*self.methods, *self.peers)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -180,7 +180,7 @@ NEAREST_LABELS = 1.3
 
 def orders_figure(table: pd.DataFrame) -> Figure:
     """One panel a motion, one line a solver: its errors at each refinement, hollow where they are not asymptotic."""
-    solvers, motions = list(table["solver"].unique()), table.groupby("motion_text", sort=False)
+    solvers, motions = list(table["solver"].unique()), table.groupby("title", sort=False)
     high = math.ceil(len(motions) / 3)
     figure = blank_figure(PAGE, 1.95 * high + 0.6)
     panels = figure.subplots(high, 3, squeeze=False, sharex=True, sharey=True)
@@ -211,8 +211,9 @@ def orders_figure(table: pd.DataFrame) -> Figure:
 def _label_slopes(axes: Axes, own: pd.DataFrame, looks: Mapping[str, Look]) -> None:
     """The slopes, at the right end and as high as the last errors fitted, but not one upon another."""
     height = math.log10(LOWEST) - NEAREST_LABELS
-    for _, row in own.dropna(subset="order").sort_values("last_error", kind="stable").iterrows():
-        height = max(math.log10(max(row["last_error"], LOWEST)), height + NEAREST_LABELS)
+    fitted = own.dropna(subset="order").assign(end=lambda rows: [errors[-1] for errors in rows["errors"]])
+    for _, row in fitted.sort_values("end", kind="stable").iterrows():
+        height = max(math.log10(max(row["end"], LOWEST)), height + NEAREST_LABELS)
         told = f"{row['order']:.2f}" if row["asymptotic"] == "yes" else f"({row['order']:.2f})"
         color = looks[row["solver"]]["color"]
         axes.text(RIGHT, 10.0**height, told, fontsize=6, color=color, va="center", clip_on=False)
@@ -243,18 +244,9 @@ def _hatch(axes: Axes, x: Floats, y: Floats, where: Mask, look: Look) -> None:
         axes.add_patch(PathPatch(outline, linewidth=0.0, zorder=1.5, **look))
 
 
-def _cross_out(axes: Axes, x: Iterable[float], y: Iterable[float]) -> None:
-    """A cross at each point that is wrong without a word."""
-    axes.plot(list(x), list(y), **(CROSS | {"zorder": 4, "rasterized": True}))
-
-
-CROSS: Look = {
-    "marker": "x",
-    "markersize": 4.0,
-    "color": "red",
-    "linestyle": "none",
-    "path_effects": _OUTLINED,
-}
+CROSS: Look = {"marker": "x", "markersize": 4.0, "color": "red", "linestyle": "none", "zorder": 4}
+CROSS |= {"path_effects": _OUTLINED, "rasterized": True}
+"""At a point that is wrong without a word."""
 BEST, WORST = 1e-9, 1.0
 """Errors beyond are drawn as these."""
 MEASURED_DOTS = 12
@@ -267,88 +259,58 @@ DOT: Look = {
 }
 
 
-class LimitOfSteps(NamedTuple):
-    """Largest step times rate, infinite for none.
-
-    held: of the step times the frequency of a mass held by its bristles.
-    """
-
-    predicted: float
-    measured: float
-    held: float = math.inf
-
-
-class StabilityPicture(NamedTuple):
-    """One problem: points at settings and rates that ascend, all settings of a rate together."""
-
-    title: str
-    rate_text: str
-    points: pd.DataFrame
-    limit: LimitOfSteps
-
-
-def stability_figure(title: str, maps: Sequence[StabilityPicture]) -> Figure | None:
+def stability_figure(title: str, table: pd.DataFrame) -> Figure | None:
     """A panel a problem: true error as colour, its regions, and the limits of the step."""
-    if not maps:
+    if table.empty:
         return None
+    maps = table.groupby("problem", sort=False)
     figure = blank_figure(min(PAGE, 2.6 * len(maps) + 1.2), 2.9)
     panels = figure.subplots(1, len(maps), squeeze=False)[0]
-    for axes, drawn in zip(panels, maps, strict=True):
-        colors = _draw_stability(axes, drawn)
+    for axes, (_, points) in zip(panels, maps, strict=True):
+        colors = _draw_stability(axes, points)
     figure.colorbar(colors, ax=list(panels), label="true error of the mean friction", extend="both", pad=0.01)
     figure.suptitle(title, x=0.01, ha="left", fontsize=8, fontweight="bold")
-    figure.legend(handles=_stability_legend(maps), loc="outside lower center", ncols=2, handlelength=2.6)
+    figure.legend(handles=_stability_legend(table), loc="outside lower center", ncols=2, handlelength=2.6)
     return figure
 
 
-def _draw_stability(axes: Axes, drawn: StabilityPicture) -> Any:
-    points, steps = drawn.points, drawn.points["setting"].iloc[0] == "steps"
-    x = points["value"].unique()
-    cells = {
-        name: points[name].to_numpy().reshape(-1, len(x)) for name in ("error", "region", "rate", "held")
-    }
-    y = cells["rate"][:, 0]
+def _draw_stability(axes: Axes, points: pd.DataFrame) -> Any:
+    first, x = points.iloc[0], points["value"].unique()
+    cells = {name: points[name].to_numpy().reshape(-1, len(x)) for name in points}
+    y, steps = cells["rate"][:, 0], first["setting"] == "steps"
     errors, mesh = np.ma.masked_invalid(np.clip(cells["error"], BEST, WORST)), (cell_edges(x), cell_edges(y))
     colors = axes.pcolormesh(*mesh, errors, norm=LogNorm(BEST, WORST), cmap="cividis", rasterized=True)
-    axes.set_facecolor("0.85")
-    _dress(axes, drawn.title, fontsize=7)
-    axes.grid(visible=False)
     _hatch(axes, *mesh, cells["region"] == "wrong_and_said", {"fill": False, "hatch": "////"})
     silent = points[points["region"] == "wrong_and_silent"]
-    _cross_out(axes, silent["value"], silent["rate"])
+    axes.plot(silent["value"], silent["rate"], **CROSS)
+    axes.set(facecolor="0.85", xscale="log", yscale="log", ylim=(y.min(), y.max()))
     axes.set_xlim(*(x.max(), x.min()) if steps else (x.min(), x.max()))
-    axes.set_ylim(y.min(), y.max())
     axes.set_xlabel("steps per period (longer steps to the right)" if steps else "tolerance")
-    axes.set_ylabel(f"local rate: {drawn.rate_text}")
-    reach = points["step_times_rate"].to_numpy().reshape(-1, len(x)) / (1.0 if steps else NEAR_LIMIT)
-    if math.isfinite(drawn.limit.predicted):
-        _contour(axes, x, y, reach, drawn.limit)
-    if math.isfinite(drawn.limit.held):
-        axes.contour(x, y, cells["held"], [drawn.limit.held], **(LIMIT | {"linestyles": "dotted"}))
+    axes.set_ylabel(f"local rate: {first['rate_text']}")
+    axes.set_title(first["title"], loc="left", fontsize=7)
+    if math.isfinite(predicted := first["predicted_limit"]):
+        reach, measured = cells["step_times_rate"] / (1.0 if steps else NEAR_LIMIT), first["measured_limit"]
+        axes.contour(x, y, reach, [predicted], **LIMIT)
+        found = axes.contour(x, y, reach, [measured if measured > 0.0 else predicted], linewidths=0.0)
+        for dots in filter(len, (np.asarray(path.vertices) for path in found.get_paths())):
+            axes.plot(*dots[:: max(1, len(dots) // MEASURED_DOTS)].T, **DOT)
+    if math.isfinite(first["held_limit"]):
+        axes.contour(x, y, cells["held"], [first["held_limit"]], **(LIMIT | {"linestyles": "dotted"}))
     return colors
 
 
-def _contour(axes: Axes, x: Floats, y: Floats, reach: Floats, limit: LimitOfSteps) -> None:
-    """Where the step taken is as long as the limit: dashed as predicted, dots as measured."""
-    drawn = axes.contour(x, y, reach, [limit.predicted], **LIMIT)
-    measured = axes.contour(x, y, reach, [limit.measured], linewidths=0.0) if limit.measured > 0.0 else drawn
-    for path in measured.get_paths():
-        if len(points := np.asarray(path.vertices)):
-            axes.plot(*points[:: max(1, len(points) // MEASURED_DOTS)].T, **DOT)
-
-
-def _stability_legend(maps: Sequence[StabilityPicture]) -> list[Any]:
-    """The entries for what the pictures of these maps hold."""
+def _stability_legend(table: pd.DataFrame) -> list[Any]:
+    """The entries for what the pictures of a solver hold."""
     entries: list[Any] = [
         Patch(facecolor="white", edgecolor="0.2", hatch="////", label="wrong, and told so"),
         Line2D([], [], label="wrong without a word", **CROSS),
     ]
-    steps = maps[0].points["setting"].iloc[0] == "steps"
-    if any(math.isfinite(drawn.limit.predicted) for drawn in maps):
-        told = "step times rate at its limit" if steps else f"step times rate at {NEAR_LIMIT:g} of its limit"
-        entries.append(Line2D([], [], color="red", linestyle="dashed", label=f"{told}, predicted"))
+    if np.isfinite(table["predicted_limit"]).any():
+        near = "" if table["setting"].iloc[0] == "steps" else f"{NEAR_LIMIT:g} of "
+        told = f"step times rate at {near}its limit, predicted"
+        entries.append(Line2D([], [], color="red", linestyle="dashed", label=told))
         entries.append(Line2D([], [], label="measured", **(DOT | {"markersize": 3})))
-    if any(math.isfinite(drawn.limit.held) for drawn in maps):
+    if np.isfinite(table["held_limit"]).any():
         told = "limit of a mass held by its bristles"
         entries.append(Line2D([], [], color="red", linestyle="dotted", label=told))
     return entries
@@ -458,7 +420,7 @@ def _draw_failures(axes: Axes, drawn: FailurePicture, kind: str, colors: ListedC
             border = axes.contour(drawn.x, drawn.y, where, levels=[0.5], linewidths=1.1, zorder=3, **look)
             border.set(path_effects=_OUTLINED)
     rows, columns = np.nonzero(outcome == "silent")
-    _cross_out(axes, drawn.x[columns], drawn.y[rows])
+    axes.plot(drawn.x[columns], drawn.y[rows], **CROSS)
     _name_points(axes, drawn.named)
     return mesh
 
@@ -479,7 +441,7 @@ def _name_points(axes: Axes, named: pd.DataFrame) -> None:
     for _, point in named.iterrows():
         at = (point["belt_speed"], point["ordinate"])
         if point["outcome"] == "silent":
-            _cross_out(axes, at[:1], at[1:])
+            axes.plot(*at, **CROSS)
         axes.plot(*at, zorder=5, **ring)
         look: Look = {"textcoords": "offset points", "fontsize": 5.5, "zorder": 5, "bbox": box}
         axes.annotate(point["point"], at, xytext=(4, 3), **look)

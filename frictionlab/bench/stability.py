@@ -11,11 +11,11 @@ import numpy as np
 import pandas as pd
 from pydantic import Field
 
-from frictionlab.bench.charts import LimitOfSteps, StabilityPicture, stability_figure
+from frictionlab.bench.charts import stability_figure
 from frictionlab.bench.contenders import FILLED
 from frictionlab.bench.result import SectionResult, Tell, one_of
 from frictionlab.bench.stability_problems import PROBLEMS, StabilityProblem
-from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS, REGIONS, MappedSolver, MapPoint
+from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS, REGIONS, MappedSolver
 from frictionlab.values.quantities import Record
 
 STEPS, TOLERANCES, RATES = (8.0, 4096.0), (1e-9, 1e-1), (1.0, 1e3)
@@ -25,10 +25,7 @@ CAPTION = (
     "told so (refused, failed, or within the error stated), crosses: wrong without a word; red: where the step taken "
     "times the rate is at (adaptive: near) its limit, dashed as predicted, dots as measured. Integrated: {what}."
 )
-COLUMNS = [
-    *("problem", "setting", "value", "rate", "step", "step_times_rate", "predicted_limit", "measured_limit"),
-    *("status", "error", "stated", "region", "reason"),
-]
+FOR_THE_FIGURE = ["title", "rate_text", "held", "held_limit"]
 
 
 @dataclass(frozen=True)
@@ -46,59 +43,54 @@ class StabilitySection:
 
     def measure(self, tell: Tell) -> SectionResult:
         """Map every problem that it can take."""
-        missing, maps = self.mapped.missing(), list[StabilityPicture]()
+        missing, maps, title = self.mapped.missing(), [], f"Stability of {self.mapped.name}"
         for problem in () if missing else self.problems:
             if problem.name in self.mapped.problems:
                 tell(f"{self.name}: {problem.name}")
                 maps.append(self._map(problem))
-        left_out = {} if maps else {self.name: missing or "takes none of these problems"}
-        table = pd.concat([each.points for each in maps])[COLUMNS] if maps else pd.DataFrame()
-        title = f"Stability of {self.mapped.name}"
+        why = missing or "takes none of these problems"
+        table = pd.concat(maps) if maps else pd.DataFrame(columns=FOR_THE_FIGURE)
         return SectionResult(
             self.name,
             title,
-            table.replace([math.inf, -math.inf], math.nan),
-            "\n".join([f"{self.name}, {line(each)}" for each in maps] or [": ".join(*left_out.items())]),
-            partial(stability_figure, title, maps),
+            table.drop(columns=FOR_THE_FIGURE).replace([math.inf, -math.inf], math.nan),
+            "\n".join([line(self.name, each) for each in maps] or [f"{self.name}: {why}"]),
+            partial(stability_figure, title, table),
             CAPTION.format(what=self.mapped.integrated),
-            left_out=left_out,
+            left_out={} if maps else {self.name: why},
             style={"hatch.linewidth": 0.5, "savefig.dpi": 200},
         )
 
-    def _map(self, problem: StabilityProblem) -> StabilityPicture:
+    def _map(self, problem: StabilityProblem) -> pd.DataFrame:
+        """A row for each point, with the limits of its step."""
         mapped, rates = self.mapped, np.geomspace(*RATES, self.grid)
         settings = np.geomspace(*(STEPS if mapped.setting == "steps" else TOLERANCES), self.grid)
         if mapped.setting == "steps":  # each once
             settings = np.unique(np.round(settings))
         points = [mapped.point(problem, rate, at) for rate in rates.tolist() for at in settings.tolist()]
-        return StabilityPicture(
-            problem.title,
-            problem.rate_text,
-            table_of_points(problem.name, mapped.setting, points, limit := mapped.limit(problem.memory)),
-            limit,
+        found, limit = pd.DataFrame(points), mapped.limit(problem.memory)
+        return pd.DataFrame(
+            {
+                **{"problem": problem.name, "setting": mapped.setting},
+                **{name: found[name] for name in ("value", "rate", "step")},
+                "step_times_rate": found["step"] * found["rate"],
+                **{"predicted_limit": limit.predicted, "measured_limit": limit.measured},
+                **{name: found[name] for name in ("status", "error", "stated")},
+                **{"region": [point.region for point in points], "reason": found["reason"]},
+                **{"title": problem.title, "rate_text": problem.rate_text},
+                **{"held": found["held"], "held_limit": limit.held},
+            }
         )
 
 
-def table_of_points(problem: str, setting: str, points: list[MapPoint], limit: LimitOfSteps) -> pd.DataFrame:
-    """A row for each point, with the limits of its step."""
-    table = pd.DataFrame(points).assign(region=[point.region for point in points])
-    return table.assign(
-        problem=problem,
-        setting=setting,
-        step_times_rate=table["step"] * table["rate"],
-        predicted_limit=limit.predicted,
-        measured_limit=limit.measured,
-    )
-
-
-def line(drawn: StabilityPicture) -> str:
-    """Regions counted, limits predicted and measured."""
-    found, limit = drawn.points["region"].value_counts(), drawn.limit
+def line(name: str, table: pd.DataFrame) -> str:
+    """Regions counted on one problem, limits predicted and measured."""
+    found, first = table["region"].value_counts(), table.iloc[0]
     counts = ", ".join(f"{found.get(region, 0)} {region.replace('_', ' ')}" for region in REGIONS)
-    bound = f"step*rate at most {limit.measured:.3f} (predicted {limit.predicted:.3f})"
-    if math.isinf(limit.predicted) and math.isinf(limit.measured):
+    bound = f"step*rate at most {first['measured_limit']:.3f} (predicted {first['predicted_limit']:.3f})"
+    if math.isinf(first["predicted_limit"]) and math.isinf(first["measured_limit"]):
         bound = "no step is too long"
-    return f"{drawn.points['problem'].iloc[0]}: {len(drawn.points)} points: {counts}; {bound}"
+    return f"{name}, {first['problem']}: {len(table)} points: {counts}; {bound}"
 
 
 class StabilityMaps(Record):

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.charts import LimitOfSteps
 from frictionlab.bench.peers.heyoka_taylor import Heyoka
 from frictionlab.bench.peers.one_period import SOLVE_IVP_METHODS, by_heyoka, by_scipy, equations_of
 from frictionlab.bench.solve import solve_points
@@ -40,6 +39,17 @@ OFFERED_THETAS = 0.5, 1.0
 MARCHED = "a mass by march until its motion repeats, for 200 periods at most"
 CREPT = "the creep of a mass that would stick, by march until it repeats, at several widths"
 ONE_PERIOD = "one period, from a state of the periodic motion"
+
+
+class LimitOfSteps(NamedTuple):
+    """Largest step times rate, infinite for none.
+
+    held: of the step times the frequency of a mass held by its bristles.
+    """
+
+    predicted: float
+    measured: float
+    held: float = math.inf
 
 
 class MapPoint(NamedTuple):

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
+from frictionlab.bench.peers.base import Peer, closed_mean
 from frictionlab.bench.peers.equations import start
 from frictionlab.bench.peers.scipy_events import LineMotion, MotionState, first_step, means
 from frictionlab.laws.base import FrictionLaw
@@ -42,11 +42,8 @@ class Heyoka(Peer):
             return means(_line(mass, friction * mass.normal_load, tolerance), scenes, tolerance)
         speeds = np.array([scene.belt_speed for scene in scenes])
         lanes = self.lanes or _widest()
-        found = [
-            _plane(mass, friction, speeds[i : i + lanes], tolerance, lanes)
-            for i in range(0, len(speeds), lanes)
-        ]
-        return np.concatenate(found)
+        batches = (speeds[i : i + lanes] for i in range(0, len(speeds), lanes))
+        return np.concatenate([_plane(mass, friction, each, tolerance, lanes) for each in batches])
 
 
 # Compiled integrators are kept: a user makes them once for a curve.
@@ -141,8 +138,8 @@ def _plane(mass: Mass, friction: float, speeds: Floats, tolerance: float, lanes:
         return integrator.state.copy()
 
     state = np.repeat(np.array([*start(mass), 0.0])[:, None], lanes, axis=1)
-    closing = ClosureTest(tolerance, mass.normal_load, period)
-    return closed_mean(one_period, state, slice(0, 4), closing, period)[: len(speeds)]
+    enough = tolerance * mass.normal_load * period
+    return closed_mean(one_period, state, slice(0, 4), period, enough)[: len(speeds)]
 
 
 @lru_cache(maxsize=16)

@@ -11,7 +11,6 @@ import numpy as np
 
 from frictionlab.bench.peers.equations import (
     LEAST_RTOL,
-    Creeping,
     Equations,
     OnBristles,
     Sliding,
@@ -42,9 +41,7 @@ def equations_of(scene: Scene, law: FrictionLaw, width: float | None) -> Equatio
     """The equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
     if law.memory_kind == "bristle":
         return OnBristles(scene, law, MOST_CALLS_OF_A_PERIOD)
-    if width is None:
-        return Sliding(scene, law, MOST_CALLS_OF_A_PERIOD)
-    return Creeping(scene, law, MOST_CALLS_OF_A_PERIOD, width)
+    return Sliding(scene, law, MOST_CALLS_OF_A_PERIOD, width)
 
 
 def by_scipy(solver: str, equations: Equations, state: Floats, tolerance: float) -> PeriodByPeer:

@@ -15,8 +15,7 @@ from matplotlib.axis import Axis
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path as Outline
+from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
@@ -41,13 +40,9 @@ LETTERS = 36
 
 def _look(place: int, color: str, full: bool, **other: Any) -> Look:
     """Marker and line of the solver at this place, hollow or full."""
-    return {
-        "color": color,
-        "marker": MARKERS[place % len(MARKERS)],
-        "markerfacecolor": color if full else "white",
-        "linestyle": LINE_STYLES[place % len(LINE_STYLES)],
-        "markersize": 4.5,
-    } | other
+    look = {"color": color, "markerfacecolor": color if full else "white", "markersize": 4.5}
+    look |= {"marker": MARKERS[place % len(MARKERS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
+    return look | other
 
 
 def _dress(axes: Axes, title: str, scales: str = "log log", **look: Any) -> None:
@@ -67,7 +62,7 @@ def curve_figure(title: str, table: pd.DataFrame, known: float) -> Figure:
     """Times and errors of every contender: methods dark and full, peers light and hollow."""
     figure, entries, seen = blank_figure(PAGE, 3.0), [], {"method": 0, "peer": 0}
     axes = figure.add_subplot()
-    for _, own in table.groupby("solver", sort=False):
+    for _, own in table.groupby("solver", sort=False) if len(table) else ():
         side = own["side"].iloc[0]
         colors, markers = (OURS, MARKERS[:7]) if side == "method" else (THEIRS, HOLLOW)
         n = seen[side]
@@ -78,9 +73,7 @@ def curve_figure(title: str, table: pd.DataFrame, known: float) -> Figure:
         for _, row in drawn.iterrows():
             ends = [row["mean_us"], row["all_us"]]
             axes.plot(ends, [row["y"]] * 2, color=look["color"], linewidth=0.5)
-        entries.append(
-            Line2D([], [], label=_told(own), **(look | ({"linestyle": "none"} if drawn.empty else {})))
-        )
+        entries.append(_entry(_told(own), look | ({"linestyle": "none"} if drawn.empty else {})))
     lines = sum(str(entry.get_label()).count("\n") + 1.4 for entry in entries)
     figure.set_figheight(max(3.0, 0.4 + 0.11 * lines))
     axes.set_xlabel(f"{TIME}; thin: with every other column; dotted: a model without its error")
@@ -142,12 +135,12 @@ def models_figure(title: str, table: pd.DataFrame, best: pd.DataFrame, known: fl
     axes.set_ylim(0.1 * known)
     axes.set_xlim(0.2 * axes.get_xlim()[0])  # room for the name of the cheapest
     seen = {*table.loc[table["largest_error"].notna(), "solver"]}
-    entries = [Line2D([], [], label=model, **_model_look(k, 0)) for k, model in enumerate(models)]
-    entries += [Line2D([], [], linestyle="none", label=" ")]
+    entries = [_entry(model, _model_look(k, 0)) for k, model in enumerate(models)]
+    entries += [_entry(" ", {"linestyle": "none"})]
     for k, method in enumerate(methods):
         label = method if method in seen else f"{method}: refused"
-        entries += [Line2D([], [], label=label, **_look(k, "0.3", True, linestyle="none"))]
-    entries += [Line2D([], [], label="front", **FRONT)]
+        entries += [_entry(label, _look(k, "0.3", True, linestyle="none"))]
+    entries += [_entry("front", FRONT)]
     figure.legend(handles=entries, loc="outside right upper")
     return figure
 
@@ -184,10 +177,9 @@ def orders_figure(table: pd.DataFrame) -> Figure:
     high = math.ceil(len(motions) / 3)
     figure = blank_figure(PAGE, 1.95 * high + 0.6)
     panels = figure.subplots(high, 3, squeeze=False, sharex=True, sharey=True)
-    looks = {
-        solver: _look(k, (*OURS, *THEIRS)[k], True, marker="osD^v<>ph"[k], markersize=3.0, linewidth=0.9)
-        for k, solver in enumerate(solvers)
-    }
+    looks, small = dict[str, Look](), {"markersize": 3.0, "linewidth": 0.9}
+    for k, solver in enumerate(solvers):
+        looks[solver] = _look(k, (*OURS, *THEIRS)[k], True, marker="osD^v<>ph"[k], **small)
     for axes, (title, own) in zip(panels.flat, motions, strict=False):
         for _, row in own.iterrows():
             hollow = {} if row["asymptotic"] == "yes" else {"markerfacecolor": "white"}
@@ -203,7 +195,7 @@ def orders_figure(table: pd.DataFrame) -> Figure:
             axes.set_xlabel("refinements")
             axes.tick_params(labelbottom=True)
     figure.supylabel("error of the mean friction", fontsize=8)
-    entries = [Line2D([], [], label=solver, **look) for solver, look in looks.items()]
+    entries = [_entry(solver, look) for solver, look in looks.items()]
     figure.legend(handles=entries, loc="outside lower center", ncols=5, handlelength=3.2)
     return figure
 
@@ -225,23 +217,19 @@ _OUTLINED = [withStroke(linewidth=2.4, foreground="black")]
 """Lines are seen on every shade."""
 
 
-def _hatch(axes: Axes, x: Floats, y: Floats, where: Mask, look: Look) -> None:
-    """One outline around all cells of a kind between these edges: neighbours along x joined."""
-    boxes = [
-        [
-            (x[start], y[row]),
-            (x[stop], y[row]),
-            (x[stop], y[row + 1]),
-            (x[start], y[row + 1]),
-            (x[start], y[row]),
-        ]
-        for row, cells in enumerate(where)
-        for start, stop in np.flatnonzero(np.diff(cells.astype(int), prepend=0, append=0)).reshape(-1, 2)
-    ]
-    if boxes:
-        codes = [Outline.MOVETO, *[Outline.LINETO] * 3, Outline.CLOSEPOLY]
-        outline = Outline(np.concatenate(boxes), np.tile(codes, len(boxes)))
-        axes.add_patch(PathPatch(outline, linewidth=0.0, zorder=1.5, **look))
+def _hatch(
+    axes: Axes, x: Floats, y: Floats, where: Mask, edgecolor: str, facecolor: str = "none", **look: Any
+) -> None:
+    """Mark all cells of a kind between these edges."""
+    if where.any():
+        cells, (x, y) = where.repeat(2, axis=0).repeat(2, axis=1), (x.repeat(2)[1:-1], y.repeat(2)[1:-1])
+        marked = axes.contourf(x, y, cells, [0.5, 1.5], colors=[facecolor], zorder=1.5, **look)
+        marked.set(edgecolor=edgecolor, linewidth=0.0)
+
+
+def _entry(label: str, look: Look) -> Line2D:
+    """A line of a legend."""
+    return Line2D([], [], label=label, **look)
 
 
 CROSS: Look = {"marker": "x", "markersize": 4.0, "color": "red", "linestyle": "none", "zorder": 4}
@@ -253,10 +241,8 @@ MEASURED_DOTS = 12
 NEAR_LIMIT = 0.85
 """Steps that adapt hover about the limit: drawn is where they first come so near."""
 LIMIT: Look = {"linestyles": "dashed", "colors": "red", "linewidths": 1.2}
-DOT: Look = {
-    **{"color": "white", "marker": "o", "markersize": 2.5, "linestyle": "none"},
-    **{"markeredgecolor": "red", "markeredgewidth": 0.6},
-}
+DOT: Look = {"color": "white", "marker": "o", "markersize": 2.5, "linestyle": "none"}
+DOT |= {"markeredgecolor": "red", "markeredgewidth": 0.6}
 
 
 def stability_figure(title: str, table: pd.DataFrame) -> Figure | None:
@@ -280,9 +266,9 @@ def _draw_stability(axes: Axes, points: pd.DataFrame) -> Any:
     y, steps = cells["rate"][:, 0], first["setting"] == "steps"
     errors, mesh = np.ma.masked_invalid(np.clip(cells["error"], BEST, WORST)), (cell_edges(x), cell_edges(y))
     colors = axes.pcolormesh(*mesh, errors, norm=LogNorm(BEST, WORST), cmap="cividis", rasterized=True)
-    _hatch(axes, *mesh, cells["region"] == "wrong_and_said", {"fill": False, "hatch": "////"})
+    _hatch(axes, *mesh, cells["region"] == "wrong_and_said", "black", hatches=["////"])
     silent = points[points["region"] == "wrong_and_silent"]
-    axes.plot(silent["value"], silent["rate"], **CROSS)
+    axes.plot(silent["value"], silent["rate"], **(CROSS | {"markersize": 2.2}))
     axes.set(facecolor="0.85", xscale="log", yscale="log", ylim=(y.min(), y.max()))
     axes.set_xlim(*(x.max(), x.min()) if steps else (x.min(), x.max()))
     axes.set_xlabel("steps per period (longer steps to the right)" if steps else "tolerance")
@@ -301,18 +287,15 @@ def _draw_stability(axes: Axes, points: pd.DataFrame) -> Any:
 
 def _stability_legend(table: pd.DataFrame) -> list[Any]:
     """The entries for what the pictures of a solver hold."""
-    entries: list[Any] = [
-        Patch(facecolor="white", edgecolor="0.2", hatch="////", label="wrong, and told so"),
-        Line2D([], [], label="wrong without a word", **CROSS),
-    ]
+    told_so = Patch(facecolor="white", edgecolor="0.2", hatch="////", label="wrong, and told so")
+    entries: list[Any] = [told_so, _entry("wrong without a word", CROSS)]
     if np.isfinite(table["predicted_limit"]).any():
         near = "" if table["setting"].iloc[0] == "steps" else f"{NEAR_LIMIT:g} of "
         told = f"step times rate at {near}its limit, predicted"
-        entries.append(Line2D([], [], color="red", linestyle="dashed", label=told))
-        entries.append(Line2D([], [], label="measured", **(DOT | {"markersize": 3})))
+        entries += [_entry(told, {"color": "red", "linestyle": "dashed"}), _entry("measured", DOT)]
     if np.isfinite(table["held_limit"]).any():
         told = "limit of a mass held by its bristles"
-        entries.append(Line2D([], [], color="red", linestyle="dotted", label=told))
+        entries += [_entry(told, {"color": "red", "linestyle": "dotted"})]
     return entries
 
 
@@ -323,9 +306,7 @@ _WITHOUT_ERROR: dict[str, Look] = {
     "failed": {"facecolor": "0.85", "edgecolor": "#b2182b", "hatch": "xxxx"},
     "not unique": {"facecolor": "white", "edgecolor": "#762a83", "hatch": "||||"},
     "no error known": {"facecolor": "white", "edgecolor": "0.6"},
-    "reference too coarse to tell": {
-        **{"facecolor": "none", "edgecolor": "0.1", "hatch": "\\\\\\\\", "alpha": 0.45}
-    },
+    "reference too coarse to tell": {"facecolor": "none", "edgecolor": "0.5", "hatch": "\\\\\\\\"},
 }
 """Of cells without a shade; of the last the distance from the reference is above the stated error, but not with the
 reference's own added."""
@@ -382,11 +363,10 @@ def failures_figure(
     bar.set_label("error of the mean friction")
     bar.ax.set_yticklabels([f"$10^{{{round(math.log10(level))}}}$" for level in _LEVELS])
     entries: list[Any] = [Patch(linewidth=0.4, label=name, **look) for name, look in _WITHOUT_ERROR.items()]
-    entries += [Line2D([], [], label="wrong without a word", **CROSS)]
-    entries += [Line2D([], [], label=name, **(look | _LINE)) for name, look in _LINES.items()]
-    figure.legend(
-        handles=entries, loc="outside lower center", ncols=4, title=below or None, columnspacing=1.2
-    )
+    entries += [_entry("wrong without a word", CROSS)]
+    entries += [_entry(name, look | _LINE) for name, look in _LINES.items()]
+    look = {"ncols": 4, "columnspacing": 1.2, "title": below or None}
+    figure.legend(handles=entries, loc="outside lower center", **look)
     figure.suptitle(title, x=0.01, ha="left", fontsize=8)
     return figure
 
@@ -403,14 +383,13 @@ def _draw_failures(axes: Axes, drawn: FailurePicture, kind: str, colors: ListedC
         undecided = (outcome == "ok") & (cells["stated_error"] < cells["true_error"])
         told["reference too coarse to tell"] = undecided
     for name, look in _WITHOUT_ERROR.items():
-        _hatch(axes, x, y, told.get(name, outcome == name.replace(" ", "_")), look)
-    logarithmic = is_logarithmic(drawn.x), is_logarithmic(drawn.y)
-    axes.set(
-        **{f"{axis}scale": "log" if log else "linear" for axis, log in zip("xy", logarithmic, strict=True)}
-    )
-    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-    for axis, log in zip((axes.xaxis, axes.yaxis), logarithmic, strict=True):
-        _number_ticks(axis, log)
+        colors_of = {key: look[key] for key in ("facecolor", "edgecolor")}
+        cells_of = told.get(name, outcome == name.replace(" ", "_"))
+        _hatch(axes, x, y, cells_of, hatches=[look.get("hatch", "")], **colors_of)
+    for name, values, edges in (("x", drawn.x, x), ("y", drawn.y, y)):
+        log = is_logarithmic(values)
+        axes.set(**{f"{name}scale": "log" if log else "linear", f"{name}lim": (edges[0], edges[-1])})
+        _number_ticks(getattr(axes, f"{name}axis"), log)
     axes.plot(drawn.free, drawn.y, **(_LINES["V_lin"] | _LINE | {"zorder": 3.5}))
     for name, ordinate in ((name, each) for name, found in drawn.edges.items() for each in found):
         axes.axhline(ordinate, **(_LINES[name] | _LINE))

@@ -78,10 +78,17 @@ class Reference(NamedTuple):
 def built(kind: type[_RecordT], given: Any) -> _RecordT:
     """Make a record of the keys given. Raises ValueError with the first mistake, ``path: what is wrong``."""
     notes = Notes()
-    made = build_record(kind, given, (), notes)
+    made = build_record(kind, mapping(given), (), notes)
     refuse(notes)
     assert made is not None
     return made
+
+
+def mapping(given: Any) -> dict[str, Any]:
+    """The value if it is a mapping. Raises ValueError if it is none."""
+    if not isinstance(given, dict):
+        raise ValueError("must be a mapping")
+    return given
 
 
 def refuse(notes: Notes) -> None:
@@ -97,12 +104,6 @@ class _Asked(Record):
     points: AtLeastOne | None = None
 
 
-class _Closely(Record):
-    """Tolerance that a reference is solved to."""
-
-    tolerance: Positive
-
-
 class _ValuesOfFile(Record):
     """Reference values from a file, relative to the list, and how well they are known."""
 
@@ -113,9 +114,7 @@ class _ValuesOfFile(Record):
 
 def _contender(given: Any, peers: bool) -> Contender:
     """Read a method or peer of which one value may be a list, which is run through."""
-    told = {"kind": given} if isinstance(given, str) else given
-    if not isinstance(told, dict):
-        raise ValueError("must be a name or a mapping")
+    told: dict[str, Any] = {"kind": given} if isinstance(given, str) else mapping(given)
     varied = [key for key, value in told.items() if isinstance(value, list) and key not in ("kind", "points")]
     if len(varied) > 1:
         raise ValueError(f"{varied[1]}: only one value may be a list, and {varied[0]} is one")
@@ -152,16 +151,14 @@ def _solver(told: dict[str, Any], peers: bool) -> Method | Peer:
 
 def _reference(given: Any) -> Reference:
     """Read a table of values, or a method or peer with the tolerance it is to be solved to."""
-    if not isinstance(given, dict):
-        raise ValueError("must be a mapping")
-    if "values" in given:
+    if "values" in mapping(given):
         known = built(_ValuesOfFile, given)
         return Reference(known.label or known.values, "", known.error, values=_table(known.values))
-    closely = built(_Closely, {key: given[key] for key in given if key == "tolerance"})
-    told = {key: value for key, value in given.items() if key != "tolerance"}
-    solver = _solver(told, peers=told.get("kind") in PEERS)
-    label = f"{told.get('label', solver.name)} at {closely.tolerance:g}"
-    return Reference(label, solver.name, closely.tolerance, solver)
+    made = _contender(given, peers=given.get("kind") in PEERS)
+    if "tolerance" not in given or made.points or len(made.settings) > 1:
+        raise ValueError("tolerance: give the one that the reference is solved to, and no points")
+    (setting,) = made.settings
+    return Reference(f"{made.label} at {setting.tolerance:g}", made.kind, setting.tolerance, setting.solver)
 
 
 def _table(file: str) -> pd.Series:
@@ -169,11 +166,9 @@ def _table(file: str) -> pd.Series:
     try:
         table = pd.read_csv(FOLDER.get() / file, dtype=str)[REFERENCE_COLUMNS].astype(float)
     except (OSError, KeyError, ValueError) as problem:
-        named = " and ".join(REFERENCE_COLUMNS)
-        raise ValueError(
-            f"values: must be a CSV file of numbers with the columns {named}: {problem}"
-        ) from None
-    return table.set_index(REFERENCE_COLUMNS[0])[REFERENCE_COLUMNS[1]]
+        what = f"must be a CSV file of numbers with the columns {' and '.join(REFERENCE_COLUMNS)}"
+        raise ValueError(f"values: {what}: {problem}") from None
+    return table.set_index("belt_speed")["mean_friction"]
 
 
 AMethod = Annotated[Any, BeforeValidator(lambda given: _contender(given, peers=False))]

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import combinations
 from typing import Annotated, Any
 
 import numpy as np
@@ -27,6 +28,8 @@ from frictionlab.scene.scene import Scene
 from frictionlab.study.study import Study
 from frictionlab.values.quantities import Floats
 
+Known = Sequence[tuple[Reference, pd.DataFrame]]
+"""References with mean and error at each point."""
 STATUSES = ("ok", "refused", "failed", "not_unique")
 ANSWERED = ("ok", "not_unique")
 """Points that are worth timing."""
@@ -70,7 +73,7 @@ class Workload:
         """The belt speeds."""
         return [scene.belt_speed for scene in self.scenes]
 
-    def known(self) -> list[tuple[Reference, pd.DataFrame]]:
+    def known(self) -> Known:
         """Every reference with what it knows of each point."""
         return [(each, known_means(each, self.scenes, self.law)) for each in self.references]
 
@@ -103,43 +106,41 @@ class BenchCurve:
         for contender, setting in cases:
             tell(f"{self.name}: {contender.label}, {setting} ({len(rows) + 2} of {len(cases) + 1})")
             first = self.first_runs and setting is contender.settings[0]
-            rows.append(measured_row(self.work, known, contender, setting, first))
-        law = "coulomb" if self.work.law.constant_sliding_friction() else type(self.work.law).__name__
-        table = pd.DataFrame([{"scene": self.name, "law": law.lower()} | row for row in rows])
-        return SectionResult(
-            self.name,
-            self.title,
-            table.astype({"covered": "Int64"}),
+            rows.append(self._named() | measured_row(self.work, known, contender, setting, first))
+        table, speeds = pd.DataFrame(rows), self.work.speeds
+        notes = [f"{len(speeds)} belt speeds from {speeds[0]:g} to {speeds[-1]:g}."]
+        if rows:
+            table, notes = table.astype({"covered": "Int64"}), notes + _reference_lines(known, table)
+        title = f"{self.name}: {self.title}".removesuffix(": ")
+        figure, said = (
+            partial(curve_figure, title, table, largest_error(known)),
             curve_summary(self.name, table),
-            partial(curve_figure, f"{self.name}: {self.title}".removesuffix(": "), table, least_known(known)),
-            CAPTION,
-            "curve",
-            [self._span(), *_reference_lines(known, table)],
-            missing,
+        )
+        return SectionResult(
+            self.name, self.title, table, said, figure, CAPTION, "curve", notes=notes, left_out=missing
         )
 
-    def _span(self) -> str:
-        speeds = self.work.speeds
-        return f"{len(speeds)} belt speeds from {speeds[0]:g} to {speeds[-1]:g}."
+    def _named(self) -> dict[str, str]:
+        law = self.work.law
+        kind = "coulomb" if law.constant_sliding_friction() else type(law).__name__.lower()
+        return {"scene": self.name, "law": kind}
 
 
-def least_known(known: Sequence[tuple[Reference, pd.DataFrame]]) -> float:
+def largest_error(known: Known) -> float:
     """The largest error of any reference, NaN without one."""
     return float(pd.concat([found["error"] for _, found in known]).max())
 
 
-def _reference_lines(known: Sequence[tuple[Reference, pd.DataFrame]], table: pd.DataFrame) -> list[str]:
+def _reference_lines(known: Known, table: pd.DataFrame) -> list[str]:
     """Who is measured against what, how well that is known, and how far the references are apart."""
     lines = []
     for reference, found in known:
-        users = table.loc[table["reference"] == reference.label, "solver"].unique()
-        if len(users):
-            error = found["error"].max()
-            lines.append(f"Reference of {', '.join(users)}: {reference.label}, known to {error:.1e}.")
-    for i, (one, found) in enumerate(known):
-        for other, before in known[:i]:
-            apart = (found["mean"] - before["mean"]).abs().max()
-            lines.append(f"{other.label} and {one.label} differ by at most {apart:.1e}.")
+        if users := table["solver"][table["reference"] == reference.label].unique().tolist():
+            told = f"{reference.label}, known to {found['error'].max():.1e}"
+            lines.append(f"Reference of {', '.join(users)}: {told}.")
+    for (other, before), (one, found) in combinations(known, 2):
+        apart = (found["mean"] - before["mean"]).abs().max()
+        lines.append(f"{other.label} and {one.label} differ by at most {apart:.1e}.")
     return lines
 
 
@@ -151,50 +152,39 @@ def chosen(size: int, points: int | None) -> list[int]:
 
 
 def measured_row(
-    work: Workload,
-    known: Sequence[tuple[Reference, pd.DataFrame]],
-    contender: Contender,
-    setting: Setting,
-    first: bool = False,
+    work: Workload, known: Known, contender: Contender, setting: Setting, first: bool = False
 ) -> dict[str, Any]:
     """A row of a table: errors against the first reference of another kind that knows a point, times [us] a point."""
     solver, places = setting.solver, chosen(len(work.scenes), contender.points)
     scenes = [work.scenes[place] for place in places]
     found = solve_points(solver, scenes, work.law, setting.tolerance)
-    others = [(each, values) for each, values in known if each.kind != contender.kind]
-    trusted = next((each for each in others if each[1]["mean"][places].notna().any()), None)
-    counts = Counter(found["status"])
+    trusted = found.assign(mean=math.nan, error=math.nan)
+    label, known_to = "", math.nan
+    for reference, values in known:
+        if reference.kind != contender.kind and values["mean"][places].notna().any():
+            label, known_to = reference.label, values["error"].max()
+            trusted = values.loc[places].reset_index(drop=True)
+            break
+    answered = [scene for scene, told in zip(scenes, found["status"], strict=True) if told in ANSWERED]
     row = {
-        "solver": contender.label,
-        "side": contender.side,
-        "quantity": setting.quantity,
-        "value": setting.value,
-        "points": len(places),
-        **{status: counts[status] for status in STATUSES},
-        **_errors(found, None if trusted is None else trusted[1].loc[places].reset_index(), contender.side),
-        **_prices(
-            work,
-            [scene for scene, told in zip(scenes, found["status"], strict=True) if told in ANSWERED],
-            setting,
-        ),
-        "first_run_s": math.nan,
-        "reference": trusted[0].label if trusted else "",
-        "reference_error": trusted[1]["error"].max() if trusted else math.nan,
+        **{"solver": contender.label, "side": contender.side},
+        **{"quantity": setting.quantity, "value": setting.value, "points": len(places)},
+        **{status: int((found["status"] == status).sum()) for status in STATUSES},
+        **_errors(found, trusted, contender.side),
+        **_prices(work, answered, setting),
+        **{"first_run_s": math.nan, "reference": label, "reference_error": known_to},
     }
     if first and row["ok"] and isinstance(solver, Method):
         row["first_run_s"] = first_run(solver, scenes, work.law, setting.tolerance)
     return row | {"reason": _reason(found, row)}
 
 
-def _errors(found: pd.DataFrame, trusted: pd.DataFrame | None, side: str) -> dict[str, Any]:
+def _errors(found: pd.DataFrame, trusted: pd.DataFrame, side: str) -> dict[str, Any]:
     """Errors of the points that are ok and known to the reference; covered: of how many what is stated covers it."""
-    stated, nothing = found["error"].max(), {"largest_error": math.nan, "median_error": math.nan}
-    if trusted is None or not (good := (found["status"] == "ok") & trusted["mean"].notna()).any():
-        return nothing | {"stated_error": stated, "covered": None}
-    off = (found["mean"] - trusted["mean"]).abs()[good]
-    covered = int((off <= (found["error"] + trusted["error"])[good]).sum())
-    told = {"largest_error": off.max(), "median_error": off.median(), "stated_error": stated}
-    return told | {"covered": covered if side == "method" else None}
+    off = (found["mean"] - trusted["mean"]).abs().where(found["status"] == "ok")
+    told = {"largest_error": off.max(), "median_error": off.median(), "stated_error": found["error"].max()}
+    covered = int((off <= found["error"] + trusted["error"]).sum())
+    return told | {"covered": covered if side == "method" and off.notna().any() else None}
 
 
 def _reason(found: pd.DataFrame, row: dict[str, Any]) -> str:

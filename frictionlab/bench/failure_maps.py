@@ -132,12 +132,15 @@ class FailureMap(OwnBlock):
         """Every point, those of the grid first."""
 
         def told(row: MapRow) -> pd.DataFrame:
-            own = {"value": row.value, "friction_to_load": row.friction_to_load, "point": row.name}
-            return pd.DataFrame(
-                {"belt_speed": row.scenes.belt_speeds} | own | {"ordinate": self.ordinate(row)}
-            )
+            found: dict[str, Any] = {
+                "map": self.name,
+                "quantity": self.paths[1],
+                "belt_speed": row.scenes.belt_speeds,
+            }
+            found |= {"value": row.value, "friction_to_load": row.friction_to_load}
+            return pd.DataFrame(found | {"ordinate": self.ordinate(row), "point": row.name})
 
-        return self._of_rows(told).assign(map=self.name, quantity=self.paths[1])
+        return self._of_rows(told)
 
     @cached_property
     def known(self) -> list[tuple[Reference, pd.DataFrame]]:
@@ -161,14 +164,10 @@ class FailureMap(OwnBlock):
         trusted, ok = self._trusted(contender.kind), found["status"] == "ok"
         off, stated = (found["mean"] - trusted["mean"]).abs().where(ok), found["error"].where(ok)
         claimed = stated if contender.side == "method" else PEER_MARGIN * setting.tolerance
-        return self.places.assign(
-            outcome=found["status"].mask(off > claimed + trusted["error"], "silent"),
-            reason=found["reason"],
-            stated_error=stated,
-            true_error=off,
-            reference=trusted["reference"],
-            reference_error=trusted["error"],
-        )
+        told = {"outcome": found["status"].mask(off > claimed + trusted["error"], "silent")}
+        told |= {"reason": found["reason"], "stated_error": stated, "true_error": off}
+        told |= {"reference": trusted["reference"], "reference_error": trusted["error"]}
+        return self.places.drop(columns="point").assign(**told, point=self.places["point"])
 
     def _trusted(self, kind: str) -> pd.DataFrame:
         """At each point the first reference not made by this kind of solver that has an answer there."""
@@ -210,10 +209,8 @@ class FailureMap(OwnBlock):
         for found in (found for _, found in self.known if MOTION[0] in found):
             stick, turns = (found.loc[self.places["point"] == "", name].to_numpy() for name in MOTION)
             turning = np.where(np.isnan(turns), np.nan, (stick > 0.0) | (turns > 0.0))
-            return {
-                "end of reversal": turning,
-                "stick window": np.where(np.isnan(stick), np.nan, stick > 0.0),
-            }
+            sticking = np.where(np.isnan(stick), np.nan, stick > 0.0)
+            return {"end of reversal": turning, "stick window": sticking}
         return {}
 
     def free_velocities(self) -> Floats:

@@ -13,7 +13,7 @@ import pandas as pd
 from frictionlab.bench.charts import failures_figure
 from frictionlab.bench.contenders import Contender
 from frictionlab.bench.failure_maps import FailureMap
-from frictionlab.bench.result import SectionResult, Tell, file_stem
+from frictionlab.bench.result import SectionResult, Tell, file_stem, nothing_measured
 
 OUTCOMES = ("ok", "refused", "failed", "not_unique", "silent")
 """What a point can come to."""
@@ -22,10 +22,6 @@ CAPTION = (
     "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
     "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
 )
-COLUMNS = [
-    *("map", "quantity", "belt_speed", "value", "friction_to_load", "outcome", "reason", "stated_error"),
-    *("true_error", "reference", "reference_error", "point"),
-]
 
 
 @dataclass(frozen=True)
@@ -45,9 +41,7 @@ class FailureSection:
         first, style = self.maps[0][1], {"hatch.linewidth": 0.5, "svg.fonttype": "none"}  # letters stay text
         title = f"Failure maps of {self.label}{' (peer)' if first.side == 'peer' else ''}"
         if missing := first.missing():
-            left_out, nothing = {self.name: missing}, pd.DataFrame()
-            said = f"{self.name}: {missing}"
-            return SectionResult(self.name, title, nothing, said, lambda: None, CAPTION, left_out=left_out)
+            return nothing_measured(self.name, title, missing)
         for drawn, _ in self.maps:
             tell(f"{self.name}: {drawn.name}, references")
             _ = drawn.known  # found here, where it is told
@@ -55,10 +49,9 @@ class FailureSection:
         for drawn, contender in self.maps:
             tell(f"{self.name}: {drawn.name}")
             tables.append(drawn.measured(contender))
-        table = pd.concat(tables)
-        figure = partial(self._figure, title, tables)
-        summary = failures_summary(title, table)
-        return SectionResult(self.name, title, table[COLUMNS], summary, figure, CAPTION, style=style)
+        table, figure = pd.concat(tables).drop(columns="ordinate"), partial(self._figure, title, tables)
+        said = failures_summary(title, table)
+        return SectionResult(self.name, title, table, said, figure, CAPTION, style=style)
 
     def _figure(self, title: str, tables: Sequence[pd.DataFrame]) -> Any:
         """The maps that are not refused everywhere, the others in words."""

@@ -15,7 +15,7 @@ from pydantic import model_validator
 from frictionlab.bench.blocks import OwnBlock, refuse_other_sweeps
 from frictionlab.bench.charts import models_figure
 from frictionlab.bench.contenders import FILLED, AReference, AtLeastOne
-from frictionlab.bench.curve import least_known, measured_row, workloads
+from frictionlab.bench.curve import largest_error, measured_row, workloads
 from frictionlab.bench.result import SectionResult, Tell, file_stem
 from frictionlab.study.study import Study
 from frictionlab.values.quantities import Positive
@@ -28,12 +28,8 @@ CAPTION = (
 NOTICEABLY = 0.9
 """Times an error: what is nearer by less is not worth its price."""
 WHOLE = "whole"
-COLUMNS = [
-    *("law", "scene", "solver", "quantity", "value", "points", "ok", "refused", "failed", "not_unique"),
-    *("largest_error", "median_error", "stated_error"),
-    *("mean_us", "mean_us_q1", "mean_us_q2", "mean_us_q3", "model_us", "error_us"),
-    *("front", "reference", "reason"),
-]
+OF_CURVES_ALONE = "^model$|side|covered|repeats|all_us|model_us_q|first_run|reference_error"
+"""Columns of a row that a table of models lacks."""
 
 
 class ModelsBlock(OwnBlock):
@@ -79,11 +75,10 @@ class ModelsSection:
         """Measure every method on every model."""
         block, rows = self.block, list[dict[str, Any]]()
         tell(f"{self.name}: references")
-        works = [
-            ({"law": law, "scene": scene}, work)
-            for scene, study in block.studies
-            for law, work in workloads(study, block.references, block.repeats, block.seconds)
-        ]
+        works = []
+        for scene, study in block.studies:
+            for law, work in workloads(study, block.references, block.repeats, block.seconds):
+                works.append(({"law": law, "scene": scene}, work))
         # of the method that is the reference, too: what a model leaves out is not its error
         known = [(each._replace(kind=""), found) for each, found in works[0][1].known()]
         for model, work in works:
@@ -94,15 +89,14 @@ class ModelsSection:
         table = pd.DataFrame(rows)
         table["model"] = table.apply(model_label, axis=1)
         best, title = front(table), block.title or self.name
-        table["front"] = np.where(table.index.isin(best.index), "yes", "no")
-        return SectionResult(
-            self.name,
-            block.title,
-            table[COLUMNS].rename(columns={"solver": "method"}),
-            _summary(f"{self.name}: errors against {table['model'][0]} ({block.references[0].label})", best),
-            partial(models_figure, title, table, best, least_known(known)),
-            CAPTION,
+        on_front = np.where(table.index.isin(best.index), "yes", "no")
+        shown = table.loc[:, ~table.columns.str.contains(OF_CURVES_ALONE)].rename(
+            columns={"solver": "method"}
         )
+        shown.insert(shown.columns.get_loc("reference"), "front", on_front)
+        head = f"{self.name}: errors against {table['model'][0]} ({block.references[0].label})"
+        figure = partial(models_figure, title, table, best, largest_error(known))
+        return SectionResult(self.name, block.title, shown, _summary(head, best), figure, CAPTION)
 
 
 def _summary(head: str, best: pd.DataFrame) -> str:

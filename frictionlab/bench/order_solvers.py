@@ -25,25 +25,15 @@ from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.values.quantities import Floats
 
-_RESONANCE = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=20.0, drive=Drive(amplitude=10.0, frequency=1.0)
-)
+_RESONANCE = Scene(damping_ratio=0.1, normal_load=10, belt_speed=20, drive=Drive(amplitude=10, frequency=1))
 """Strong friction at resonance: without friction the velocity has the amplitude 50."""
-_MOSTLY_HELD = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=1.0, drive=Drive(amplitude=2.5, frequency=0.5)
-)
+_HELD = Scene(damping_ratio=0.1, normal_load=10, belt_speed=1, drive=Drive(amplitude=2.5, frequency=0.5))
 """The load is below friction: the mass sticks most of the time."""
-_IN_PHASE = Scene(
-    damping_ratio=0.1,
-    normal_load=1.0,
-    belt_speed=5.0,
-    drive=Drive(unbalance=10.0, frequency=4.0),
-    transverse=Transverse(natural_frequency=1.0, damping_ratio=0.1, load=Load(unbalance=10.0)),
-)
+_DRIVE = Drive(unbalance=10, frequency=4)
+_ACROSS = Transverse(natural_frequency=1, damping_ratio=0.1, load=Load(unbalance=10))
+_IN_PHASE = Scene(damping_ratio=0.1, normal_load=1, belt_speed=5, drive=_DRIVE, transverse=_ACROSS)
 """Both velocities swing in phase, with 43: slip turns round twice a period at 0.7 of the belt's speed."""
-_OFF_RESONANCE = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=45.0, drive=Drive(amplitude=30.0, frequency=1.5)
-)
+_QUICK = Scene(damping_ratio=0.1, normal_load=10, belt_speed=45, drive=Drive(amplitude=30, frequency=1.5))
 """Off resonance; without friction the velocity has the amplitude 35."""
 _COULOMB = Coulomb(mu=0.4)
 _FALLING = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=40.0)
@@ -67,13 +57,11 @@ class KindOfMotion:
 
 
 _ALL = (
-    KindOfMotion("smooth", "slip without reversal", _OFF_RESONANCE, _FALLING, "Stribeck, falling", False),
+    KindOfMotion("smooth", "slip without reversal", _QUICK, _FALLING, "Stribeck, falling", False),
     KindOfMotion("crossing", "slip reverses", _RESONANCE, _COULOMB, "Coulomb", True),
     KindOfMotion("grazing", "slip just reaches rest", _RESONANCE.at(50.0), _COULOMB, "Coulomb", True),
-    KindOfMotion("stick", "mostly stick", _MOSTLY_HELD, _COULOMB, "Coulomb", True),
-    KindOfMotion(
-        "bristle_dragged", "bristles, no reversal", _OFF_RESONANCE, _DRAGGED, "LuGre, falling", False
-    ),
+    KindOfMotion("stick", "mostly stick", _HELD, _COULOMB, "Coulomb", True),
+    KindOfMotion("bristle_dragged", "bristles, no reversal", _QUICK, _DRAGGED, "LuGre, falling", False),
     KindOfMotion("bristle_soft", "soft bristles, 5 long", _RESONANCE, _SOFT, "LuGre", True),
     KindOfMotion("bristle_stiff", "stiff bristles, 0.5 long", _RESONANCE, _STIFF, "LuGre", True),
     KindOfMotion("plane_near_rest", "plane, slip passes near rest", _IN_PHASE, _COULOMB, "Coulomb", False),
@@ -99,11 +87,10 @@ TOLERANCES = np.array([1e-2 * 0.1**k for k in range(9)])
 
 
 class Refinement(NamedTuple):
-    """Errors of the mean friction at settings of one kind, coarse to fine; sizes: step, width or tolerance."""
+    """Errors of the mean friction at settings of one kind, coarse to fine: steps, width or tolerance."""
 
     setting: str
     values: Floats
-    sizes: Floats
     errors: Floats
 
 
@@ -130,18 +117,15 @@ def _fixed_steps(name: str, stepper: StepperName, memory: Sequence[str], theta: 
         grids, doublings = samples if motion.irregular else 1, 2 ** np.arange(halvings)
         errors = np.empty((grids, halvings))
         for grid in range(grids):
-            steps = (first + grid * first // (2 * grids)) * doublings
-            paces = [
-                Resolution(
-                    steps=int(n), refined=int(n // steps[0]), theta=theta, enough=CLOSED_ORBIT, most=LAPS
-                )
-                for n in steps
-            ]
-            shifts = 360.0 / steps * ((grid * GOLDEN_PHASE) % 1.0)
-            scenes = [with_phase(motion.scene, shift) for shift in shifts.tolist()]
+            steps = ((first + grid * first // (2 * grids)) * doublings).tolist()
+            told: dict[str, Any] = {"theta": theta, "enough": CLOSED_ORBIT, "most": LAPS}
+            paces = [Resolution(steps=n, refined=n // steps[0], **told) for n in steps]
+            shifts = [360.0 / n * ((grid * GOLDEN_PHASE) % 1.0) for n in steps]
+            scenes = [with_phase(motion.scene, shift) for shift in shifts]
             errors[grid] = _run_through(scenes, motion, stepper, paces) - mean
-        counts = (first * doublings).astype(float)
-        return Refinement("steps", counts, 1.0 / counts, np.sqrt(np.mean(errors**2, axis=0)))
+        return Refinement(
+            "steps", (first * doublings).astype(np.float64), np.sqrt(np.mean(errors**2, axis=0))
+        )
 
     return OrderSolver(name, lambda motion: motion.law.memory_kind in memory, refined)
 
@@ -159,12 +143,10 @@ def _run_through(
 
 def _by_width(motion: KindOfMotion, mean: float, samples: int) -> Refinement:
     """Friction smoothed over widths that are halved."""
-    paces = [
-        Resolution(width=width, accuracy=ACCURACY, enough=100.0 * ACCURACY, most=LAPS)
-        for width in WIDTHS.tolist()
-    ]
+    told: dict[str, Any] = {"accuracy": ACCURACY, "enough": 100.0 * ACCURACY, "most": LAPS}
+    paces = [Resolution(width=width, **told) for width in WIDTHS.tolist()]
     means = _run_through([motion.scene] * len(paces), motion, "smoothed", paces)
-    return Refinement("width", WIDTHS, WIDTHS, np.abs(means - mean))
+    return Refinement("width", WIDTHS, np.abs(means - mean))
 
 
 def _by_tolerance(method: Method) -> OrderSolver:
@@ -173,7 +155,7 @@ def _by_tolerance(method: Method) -> OrderSolver:
     def refined(motion: KindOfMotion, mean: float, samples: int) -> Refinement:
         found = [solve_points(method, [motion.scene], motion.law, asked) for asked in TOLERANCES.tolist()]
         errors = np.abs(np.array([each["mean"].iloc[0] for each in found]) - mean)
-        return Refinement("tolerance", TOLERANCES, TOLERANCES, errors)
+        return Refinement("tolerance", TOLERANCES, errors)
 
     return OrderSolver(method.name, lambda motion: method.refusal(motion.scene, motion.law) is None, refined)
 

@@ -143,7 +143,8 @@ def order_row(
 ) -> dict[str, Any]:
     """One solver on one motion: the order of its errors about a mean known to an error."""
     found, (theory, reason) = solver.refined(motion, mean, samples), theory_of(solver.name, motion.name)
-    fit = fit_order(found.sizes, found.errors, known)
+    sizes = 1.0 / found.values if found.setting == "steps" else found.values
+    fit = fit_order(sizes, found.errors, known)
     ends = [fit.first, fit.last] if fit.order == fit.order else []
     first, last = found.values[ends] if ends else (math.nan, math.nan)
     return {

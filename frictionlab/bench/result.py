@@ -57,6 +57,13 @@ def one_of(known: Mapping[str, Any]) -> BeforeValidator:
     return BeforeValidator(named)
 
 
+def nothing_measured(name: str, title: str, why: str) -> SectionResult:
+    """The result of a section of a solver that is left out."""
+    return SectionResult(
+        name, title, pd.DataFrame(), f"{name}: {why}", lambda: None, "", left_out={name: why}
+    )
+
+
 def file_stem(name: str) -> str:
     """A name as a file may have it: runs of all but letters, digits, points, - and _ become one _.
 

@@ -135,11 +135,6 @@ def first_run(method: Method, scenes: Sequence[Scene], law: FrictionLaw, toleran
     """
     with tempfile.TemporaryDirectory() as empty:
         environment = {name: value for name, value in os.environ.items() if name != "FRICTIONLAB_COMPILE"}
-        done = subprocess.run(
-            [sys.executable, "-c", SCRIPT],
-            input=pickle.dumps((method, list(scenes), law, tolerance)),
-            env=environment | {"FRICTIONLAB_CACHE": empty},
-            stdout=subprocess.PIPE,
-            check=True,
-        )
-    return float(done.stdout)
+        environment["FRICTIONLAB_CACHE"] = empty
+        given, command = pickle.dumps((method, list(scenes), law, tolerance)), [sys.executable, "-c", SCRIPT]
+        return float(subprocess.check_output(command, input=given, env=environment))

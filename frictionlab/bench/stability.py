@@ -13,7 +13,7 @@ from pydantic import Field
 
 from frictionlab.bench.charts import stability_figure
 from frictionlab.bench.contenders import FILLED
-from frictionlab.bench.result import SectionResult, Tell, one_of
+from frictionlab.bench.result import SectionResult, Tell, nothing_measured, one_of
 from frictionlab.bench.stability_problems import PROBLEMS, StabilityProblem
 from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS, REGIONS, MappedSolver
 from frictionlab.values.quantities import Record
@@ -48,18 +48,13 @@ class StabilitySection:
             if problem.name in self.mapped.problems:
                 tell(f"{self.name}: {problem.name}")
                 maps.append(self._map(problem))
-        why = missing or "takes none of these problems"
-        table = pd.concat(maps) if maps else pd.DataFrame(columns=FOR_THE_FIGURE)
-        return SectionResult(
-            self.name,
-            title,
-            table.drop(columns=FOR_THE_FIGURE).replace([math.inf, -math.inf], math.nan),
-            "\n".join([line(self.name, each) for each in maps] or [f"{self.name}: {why}"]),
-            partial(stability_figure, title, table),
-            CAPTION.format(what=self.mapped.integrated),
-            left_out={} if maps else {self.name: why},
-            style={"hatch.linewidth": 0.5, "savefig.dpi": 200},
-        )
+        if not maps:
+            return nothing_measured(self.name, title, missing or "takes none of these problems")
+        table, style = pd.concat(maps), {"hatch.linewidth": 0.5, "savefig.dpi": 200}
+        shown = table.drop(columns=FOR_THE_FIGURE).replace([math.inf, -math.inf], math.nan)
+        said = "\n".join(line(self.name, each) for each in maps)
+        figure, caption = partial(stability_figure, title, table), CAPTION.format(what=self.mapped.integrated)
+        return SectionResult(self.name, title, shown, said, figure, caption, style=style)
 
     def _map(self, problem: StabilityProblem) -> pd.DataFrame:
         """A row for each point, with the limits of its step."""
@@ -69,18 +64,14 @@ class StabilitySection:
             settings = np.unique(np.round(settings))
         points = [mapped.point(problem, rate, at) for rate in rates.tolist() for at in settings.tolist()]
         found, limit = pd.DataFrame(points), mapped.limit(problem.memory)
-        return pd.DataFrame(
-            {
-                **{"problem": problem.name, "setting": mapped.setting},
-                **{name: found[name] for name in ("value", "rate", "step")},
-                "step_times_rate": found["step"] * found["rate"],
-                **{"predicted_limit": limit.predicted, "measured_limit": limit.measured},
-                **{name: found[name] for name in ("status", "error", "stated")},
-                **{"region": [point.region for point in points], "reason": found["reason"]},
-                **{"title": problem.title, "rate_text": problem.rate_text},
-                **{"held": found["held"], "held_limit": limit.held},
-            }
-        )
+        told: dict[str, Any] = {"problem": problem.name, "setting": mapped.setting}
+        told |= {name: found[name] for name in ("value", "rate", "step")}
+        told |= {"step_times_rate": found["step"] * found["rate"]}
+        told |= {"predicted_limit": limit.predicted, "measured_limit": limit.measured}
+        told |= {name: found[name] for name in ("status", "error", "stated")}
+        told |= {"region": [point.region for point in points], "reason": found["reason"]}
+        told |= {"title": problem.title, "rate_text": problem.rate_text}
+        return pd.DataFrame(told | {"held": found["held"], "held_limit": limit.held})
 
 
 def line(name: str, table: pd.DataFrame) -> str:

@@ -106,10 +106,12 @@ def fastest(table: pd.DataFrame, side: str, target: float) -> str:
 
 def curve_summary(name: str, table: pd.DataFrame) -> str:
     """The time per point to reach an error, for every contender, with the ratio to the best method."""
+    title = f"{name}: us per point to a largest error of (times the best method's)"
+    if table.empty:
+        return title
     best = [reached(table[table["side"] == "method"], target).min() for target in TARGETS]
     near = [reached(table, target) for target in TARGETS]
-    wide = max(map(len, table["solver"]), default=0) + 7
-    title = f"{name}: us per point to a largest error of (times the best method's)"
+    wide = max(map(len, table["solver"])) + 7
     lines = [title, " " * wide + "".join(f"{target:>22.0e}" for target in TARGETS)]
     for label, own in table.groupby("solver", sort=False):
         times = [each.get(label, math.nan) for each in near]

@@ -214,6 +214,17 @@ def test_peers_that_are_not_installed_are_one_line_and_no_rows(monkeypatch: pyte
     assert legend(found) == ["off"]
 
 
+def test_a_curve_of_peers_that_are_all_missing_has_no_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(base, "find_spec", lambda name: None)
+
+    found = curve(changed(LIST, f"methods:\n{METHODS}", "peers: [heyoka]"))
+
+    assert found.table.empty
+    assert "A: us per point" in found.summary
+    assert found.left_out.keys() == {"heyoka"}
+    assert legend(found) == []
+
+
 def test_few_points_of_a_curve_are_spread_over_it() -> None:
     assert chosen(64, None) == list(range(64))
     assert chosen(64, 4) == [0, 21, 42, 63]
@@ -296,17 +307,6 @@ def test_a_list_may_have_sections_alone(capsys: pytest.CaptureFixture[str]) -> N
     assert sorted(path.name for path in Path("out").iterdir()) == ["bench.json", "index.html", *written]
 
 
-@pytest.mark.parametrize(
-    ("section", "told"),
-    [
-        ("orders: {motions: [smoth]}", "did you mean 'smooth'"),
-        ("orders: false", "must be a mapping"),
-    ],
-)
-def test_a_wrong_request_of_a_section_is_told(section: str, told: str) -> None:
-    assert told in str(mistake(f"schema: 1\n{section}\n"))
-
-
 @deep("more kernels to compile")
 def test_a_section_is_chosen_by_name_beside_curves(capsys: pytest.CaptureFixture[str]) -> None:
     Path("list.yaml").write_text(f"{LIST}stability: {{steppers: [sdirk2], problems: [bristle], grid: 2}}\n")
@@ -318,6 +318,10 @@ def test_a_section_is_chosen_by_name_beside_curves(capsys: pytest.CaptureFixture
 
 
 MISTAKES = [
+    ("title: Fakes", "orders: {motions: [smoth]}", "list.yaml:2:", "did you mean 'smooth'"),
+    ("title: Fakes", "orders: false", "list.yaml:2:", "orders: must be a mapping"),
+    ("  - name: A", "  - 5\n  - name: A", "list.yaml:5:", "scenes[0]: must be a mapping, got 5"),
+    ("[{values", "[{kind: exact}, {values", "list.yaml:9:", "references[0].tolerance: give the one"),
     ("mu: 0.4", "mu: -1", "list.yaml:7:", "scenes[0].laws[0].mu: must be > 0, got -1"),
     ("name: A", "name: a/b", "list.yaml:5:", "scenes[0].name: names a file"),
     ("sweep: {", "sweep: {scene.normal_load: [1, 2], ", "list.yaml:8:", "sweeps the belt speed alone"),
@@ -376,38 +380,32 @@ def test_the_lists_of_the_documents_have_no_mistakes_and_values_at_their_belt_sp
 # --- peers --------------------------------------------------------------------------------------------------------
 
 LAW = Coulomb(mu=0.4)
-SLIDING = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=20.0, drive=Drive(unbalance=10.0, frequency=1.0)
-)
-STICKING = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=0.5, drive=Drive(amplitude=2.5, frequency=0.5)
-)
-PLANAR = Scene(
-    damping_ratio=0.1,
-    normal_load=1.0,
-    belt_speed=0.5,
-    drive=Drive(unbalance=10.0, frequency=4.0),
-    transverse=Transverse(natural_frequency=4.0, damping_ratio=0.1, load=Load(unbalance=10.0)),
-)
-PLANAR_MEAN = 0.001269402004447  # by collocation
+LINE = Scene(damping_ratio=0.1, normal_load=10, belt_speed=20, drive=Drive(unbalance=10, frequency=1))
+STICKING = LINE.model_copy(update={"belt_speed": 0.5, "drive": Drive(amplitude=2.5, frequency=0.5)})
+ACROSS = Transverse(natural_frequency=4, damping_ratio=0.1, load=Load(unbalance=10))
+UNBALANCE = Drive(unbalance=10, frequency=4)
+PLANE = Scene(damping_ratio=0.1, normal_load=1, belt_speed=0.5, drive=UNBALANCE, transverse=ACROSS)
+BRISTLES = LuGre(mu_kinetic=0.4, presliding_length=5e-2, damping=4e-4)
+IN_THE_PLANE = ElastoPlastic(mu_kinetic=0.4, presliding_length=1.0)
+ON_THE_LINE = [(name, LAW, scene, 1e-9) for name in ("scipy_events", "heyoka") for scene in (LINE, STICKING)]
+MEANS = [
+    *((*case, None, 1e-7) for case in ON_THE_LINE),
+    *((name, LAW, PLANE, 1e-6, 0.001269402004447, 1e-4) for name in ("scipy", "heyoka")),  # by collocation
+    ("scipy_bristle", BRISTLES, LINE.at(27.0), 1e-6, 0.23164774756257994, 1e-5),  # W4a of truth.csv
+    ("scipy_bristle", IN_THE_PLANE, PLANE.at(5.0), 1e-5, 0.012659382313928562, 1e-4),  # plane of truth.csv
+]
 
 
-@pytest.mark.parametrize("name", ["scipy_events", "heyoka"])
-@pytest.mark.parametrize("scene", [SLIDING, STICKING], ids=["sliding", "sticking"])
-def test_a_peer_with_events_finds_the_mean_friction(name: str, scene: Scene) -> None:
+@pytest.mark.parametrize(("name", "law", "scene", "tolerance", "mean", "off"), MEANS)
+def test_a_peer_finds_the_mean_friction(
+    name: str, law: FrictionLaw, scene: Scene, tolerance: float, mean: float | None, off: float
+) -> None:
+    """That of the method exact where no mean is given."""
     peer = PEERS[name]()
     pytest.importorskip(peer.package)
-    expected = with_columns(Exact(), [scene], LAW, 1e-11).columns["mean_friction"]
+    expected = with_columns(Exact(), [scene], law, 1e-11).columns["mean_friction"] if mean is None else [mean]
 
-    assert peer.solve([scene], LAW, 1e-9) == pytest.approx(expected, abs=1e-7)
-
-
-@pytest.mark.parametrize("name", ["scipy", "heyoka"])
-def test_a_peer_in_the_plane_finds_the_mean_friction(name: str) -> None:
-    peer = PEERS[name]()
-    pytest.importorskip(peer.package)
-
-    assert peer.solve([PLANAR], LAW, 1e-6) == pytest.approx([PLANAR_MEAN], abs=1e-4)
+    assert peer.solve([scene], law, tolerance) == pytest.approx(expected, abs=off)
 
 
 @pytest.mark.parametrize("name", ["scipy", "heyoka"])
@@ -422,7 +420,7 @@ def test_a_scene_that_a_peer_gives_up_leaves_the_others_their_answers(
     monkeypatch.setattr(PEERS[name], "solve", solve)
     monkeypatch.setattr(base, "find_spec", lambda name: True)
 
-    found = solve_points(PEERS[name](), [SLIDING.at(speed) for speed in SPEEDS], LAW, 1e-6)
+    found = solve_points(PEERS[name](), [LINE.at(speed) for speed in SPEEDS], LAW, 1e-6)
 
     assert found["status"].tolist() == ["ok", "failed", "ok", "ok"]
     assert found["reason"][1] == "gave up"
@@ -433,22 +431,6 @@ def test_a_peer_refuses_what_it_is_not_set_up_for(name: str) -> None:
     peer = PEERS[name]()
     pytest.importorskip(peer.package)
 
-    assert "Coulomb" in (peer.refusal(SLIDING, Coulomb(mu=0.4, mu_static=0.5)) or "")
-    assert "Coulomb" in (peer.refusal(SLIDING, BRISTLES) or "")
-    assert (peer.refusal(PLANAR, LAW) is None) == (name != "scipy_events")
-
-
-# --- peers of bristle laws ----------------------------------------------------------------------------------------
-
-BRISTLES = LuGre(mu_kinetic=0.4, presliding_length=5e-2, damping=4e-4)
-BRISTLES_MEAN = 0.23164774756257994  # bristles W4a of truth.csv
-IN_THE_PLANE = ElastoPlastic(mu_kinetic=0.4, presliding_length=1.0)
-MEAN_IN_THE_PLANE = 0.012659382313928562  # bristles plane of truth.csv
-
-
-def test_a_peer_of_bristle_laws_finds_the_mean_friction() -> None:
-    peer = PEERS["scipy_bristle"]()
-    planar = PLANAR.model_copy(update={"belt_speed": 5.0})
-
-    assert peer.solve([SLIDING.at(27.0)], BRISTLES, 1e-6) == pytest.approx([BRISTLES_MEAN], abs=1e-5)
-    assert peer.solve([planar], IN_THE_PLANE, 1e-5) == pytest.approx([MEAN_IN_THE_PLANE], abs=1e-4)
+    assert "Coulomb" in (peer.refusal(LINE, Coulomb(mu=0.4, mu_static=0.5)) or "")
+    assert "Coulomb" in (peer.refusal(LINE, BRISTLES) or "")
+    assert (peer.refusal(PLANE, LAW) is None) == (name != "scipy_events")

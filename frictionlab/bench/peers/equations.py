@@ -68,12 +68,11 @@ class Equations(ABC):
 
 
 class Sliding(Equations):
-    """Constant friction against the slip: x1, v1, x2, v2 and that integral; width: of friction smoothed by tanh."""
+    """Constant friction against the slip: x1, v1, x2, v2 and that integral."""
 
-    def __init__(self, scene: Scene, law: FrictionLaw, most_calls: int, width: float | None = None) -> None:
+    def __init__(self, scene: Scene, law: FrictionLaw, most_calls: int) -> None:
         super().__init__(scene, most_calls)
         self.friction, self.straight = law.sliding_friction(1.0), self.mass.transverse_force == 0
-        self.width = width
 
     def rates(self, turn: complex, y: list[float]) -> list[float]:
         m = self.mass
@@ -81,13 +80,22 @@ class Sliding(Equations):
         slip = v1 - self.belt_speed
         speed = abs(slip) if self.straight else math.hypot(slip, v2)
         rub = self.friction / speed if speed > 0.0 else 0.0
-        if self.width is not None:
-            rub *= math.tanh(speed / self.width)
         a1 = (m.force * turn).imag - m.damping * v1 - x1 - m.normal_load * rub * slip
         if self.straight:
             return [v1, a1, 0.0, 0.0, rub * slip]
         across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub * v2
         return [v1, a1, v2, (m.transverse_force * turn).imag - across, rub * slip]
+
+
+class Creeping(Sliding):
+    """The same along the belt, with friction smoothed by tanh over a width."""
+
+    width: float
+
+    def rates(self, turn: complex, y: list[float]) -> list[float]:
+        m, x, v = self.mass, y[0], y[1]
+        rub = self.friction * math.tanh((v - self.belt_speed) / self.width)
+        return [v, (m.force * turn).imag - m.damping * v - x - m.normal_load * rub, 0.0, 0.0, rub]
 
 
 class _Plain:

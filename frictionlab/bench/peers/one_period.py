@@ -11,6 +11,7 @@ import numpy as np
 
 from frictionlab.bench.peers.equations import (
     LEAST_RTOL,
+    Creeping,
     Equations,
     OnBristles,
     Sliding,
@@ -41,7 +42,11 @@ def equations_of(scene: Scene, law: FrictionLaw, width: float | None) -> Equatio
     """The equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
     if law.memory_kind == "bristle":
         return OnBristles(scene, law, MOST_CALLS_OF_A_PERIOD)
-    return Sliding(scene, law, MOST_CALLS_OF_A_PERIOD, width)
+    if width is None:
+        return Sliding(scene, law, MOST_CALLS_OF_A_PERIOD)
+    creeping = Creeping(scene, law, MOST_CALLS_OF_A_PERIOD)
+    creeping.width = width
+    return creeping
 
 
 def by_scipy(solver: str, equations: Equations, state: Floats, tolerance: float) -> PeriodByPeer:

@@ -153,27 +153,23 @@ def bench_page(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> str:
 
     The section of a peer that is not installed is left out: a line at the head of the page says so.
     """
-    shown = [
-        _part(folder, stem, entry)
-        for stem, entry in parts.items()
-        if entry["kind"] == "curve" or not entry["missing"]
-    ]
+    told = {stem: each for stem, each in parts.items() if each["kind"] == "curve" or not each["missing"]}
+    shown = [_part(folder, stem, entry) for stem, entry in told.items()]
     curves = [part for part in shown if part["kind"] == "curve"]
     missing = {name: told for entry in parts.values() for name, told in entry["missing"].items()}
     latest = max(parts.values(), key=lambda entry: str(entry["date"]))
     dates = [str(entry["date"]) for entry in parts.values()]
+    facts = [f"{counted(latest['cores'], 'core')} of {latest['processor']}"]
+    facts += [" … ".join(dict.fromkeys((min(dates), max(dates))))]
     counts = {"curve": len(curves), "section": len(shown) - len(curves)}
+    facts += [counted(count, noun) for noun, count in counts.items() if count]
     return rendered(
         "bench.html",
         title=f"Bench results in {folder.absolute().name}",
-        facts=[
-            f"{counted(latest['cores'], 'core')} of {latest['processor']}",
-            " … ".join(dict.fromkeys((min(dates), max(dates)))),
-            *(counted(count, noun) for noun, count in counts.items() if count),
-        ],
-        overview=_overview(folder, curves),
+        facts=facts,
+        overview=_overview(curves),
         missing=left_out_line(missing) if missing else "",
-        parts=[part | {"tables": [_shown(folder, part, name) for name in part["tables"]]} for part in shown],
+        parts=shown,
         versions=_versions(latest),
     )
 
@@ -181,9 +177,10 @@ def bench_page(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> str:
 def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     """A curve or a section of the page with those of its tables that can be read; print: where it was measured."""
     pictures = [{**each, "address": address(folder / each["file_stem"])} for each in entry["pictures"]]
-    tables = [name for name in entry["tables"] if not _table(folder / name).empty]
-    told = {"anchor": f"part-{stem}", "pictures": pictures, "tables": tables, "print": small_print(entry)}
-    return {**entry, **told}
+    told = {"anchor": f"part-{stem}", "pictures": pictures, "print": small_print(entry)}
+    read = {name: table for name in entry["tables"] if not (table := _table(folder / name)).empty}
+    shown = [_shown(name, table, entry["kind"]) for name, table in read.items()]
+    return {**entry, **told, "tables": shown, "read": read}
 
 
 def _table(file: Path) -> pd.DataFrame:
@@ -194,32 +191,27 @@ def _table(file: Path) -> pd.DataFrame:
         return pd.DataFrame()
 
 
-def _overview(folder: Path, curves: Sequence[Mapping[str, Any]]) -> Grid | None:
+def _overview(curves: Sequence[Mapping[str, Any]]) -> Grid | None:
     """The fastest on each curve: of the methods to every error of interest, of other libraries to one."""
     heads = ["curve", *(f"to {target:.0e}" for target in TARGETS), f"other libraries, to {TARGETS[1]:.0e}"]
-    rows = [
-        [
-            part["name"],
-            *(fastest(table, "method", target) for target in TARGETS),
-            fastest(table, "peer", TARGETS[1]),
-        ]
-        for part in curves
-        for table in (_table(folder / name) for name in part["tables"])
-    ]
+    asked, rows = [*(("method", target) for target in TARGETS), ("peer", TARGETS[1])], []
+    for part in curves:
+        for table in part["read"].values():
+            rows.append([part["name"], *(fastest(table, side, target) for side, target in asked)])
     caption = "The fastest to a largest error of the mean friction, in microseconds a point"
     return Grid(caption, heads, rows) if rows else None
 
 
-def _shown(folder: Path, part: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _shown(name: str, table: pd.DataFrame, kind: str) -> dict[str, Any]:
     """The table of a file without columns that are empty in every row, and the file with all of it."""
-    table, stem = _table(folder / name), name.removesuffix(".csv")
     few = table if len(table) <= MOST_ROWS_ON_PAGE else table.head(ROWS_OF_MANY)
-    cells = without_empty(curve_cells(few) if part["kind"] == "curve" else any_cells(few))
-    caption = f"{name}: {counted(len(table), 'row')}"
-    if part["kind"] == "curve":
-        caption = f"{stem}: errors of the mean friction, and times per point"
+    cells, caption = any_cells(few), f"{name}: {counted(len(table), 'row')}"
+    if kind == "curve":
+        stem = name.removesuffix(".csv")
+        cells, caption = curve_cells(few), f"{stem}: errors of the mean friction, and times per point"
     if len(few) < len(table):
         caption = f"{name}: the first {len(few)} of {len(table):,} rows"
+    cells = without_empty(cells)
     return {"grid": Grid(caption, [*cells.columns], cells.to_numpy().tolist()), "file": name}
 
 

@@ -63,15 +63,15 @@ class StabilitySection:
         if mapped.setting == "steps":  # each once
             settings = np.unique(np.round(settings))
         points = [mapped.point(problem, rate, at) for rate in rates.tolist() for at in settings.tolist()]
-        found, limit = pd.DataFrame(points), mapped.limit(problem.memory)
+        found, measured = pd.DataFrame(points), mapped.measured(problem.memory)
         told: dict[str, Any] = {"problem": problem.name, "setting": mapped.setting}
         told |= {name: found[name] for name in ("value", "rate", "step")}
         told |= {"step_times_rate": found["step"] * found["rate"]}
-        told |= {"predicted_limit": limit.predicted, "measured_limit": limit.measured}
+        told |= {"predicted_limit": mapped.predicted, "measured_limit": measured}
         told |= {name: found[name] for name in ("status", "error", "stated")}
         told |= {"region": [point.region for point in points], "reason": found["reason"]}
         told |= {"title": problem.title, "rate_text": problem.rate_text}
-        return pd.DataFrame(told | {"held": found["held"], "held_limit": limit.held})
+        return pd.DataFrame(told | {"held": found["held"], "held_limit": mapped.held})
 
 
 def line(name: str, table: pd.DataFrame) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -16,9 +17,7 @@ _SHAKEN = Scene(damping_ratio=0.5, normal_load=1.0, belt_speed=1.0, drive=Drive(
 """Weak friction: slip goes from -5 to 3, and settles within a few periods."""
 _FASTEST = 5.0
 _LOAD = 10.0
-_CARRIED = Scene(
-    damping_ratio=0.5, normal_load=_LOAD, belt_speed=0.5, drive=Drive(amplitude=3.0, frequency=1.0)
-)
+_CARRIED = Scene(damping_ratio=0.5, normal_load=_LOAD, belt_speed=0.5, drive=Drive(amplitude=3, frequency=1))
 """The load is below friction: smoothed friction lets the mass creep where it would stick."""
 
 
@@ -52,16 +51,10 @@ def _in_the_plane(rate: float) -> tuple[Scene, FrictionLaw]:
     The spring across grows with the rate, or the mass would creep to its place within as many periods; along the belt
     it starts where the spring balances friction, or the belt would carry it there within as many.
     """
-    quick = math.sqrt(rate)
-    scene = Scene(
-        damping_ratio=0.5,
-        normal_load=rate / MU,
-        belt_speed=1.0,
-        drive=Drive(amplitude=0.0, frequency=1.0),
-        transverse=Transverse(natural_frequency=quick, damping_ratio=0.5, load=Load(amplitude=quick)),
-        initial=Initial(x=rate),
-    )
-    return scene, Coulomb(mu=MU)
+    quick, drive = math.sqrt(rate), Drive(amplitude=0.0, frequency=1.0)
+    across = Transverse(natural_frequency=quick, damping_ratio=0.5, load=Load(amplitude=quick))
+    known: dict[str, Any] = {"normal_load": rate / MU, "initial": Initial(x=rate)}
+    return Scene(damping_ratio=0.5, belt_speed=1, drive=drive, transverse=across, **known), Coulomb(mu=MU)
 
 
 _ALL = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,17 +41,6 @@ CREPT = "the creep of a mass that would stick, by march until it repeats, at sev
 ONE_PERIOD = "one period, from a state of the periodic motion"
 
 
-class LimitOfSteps(NamedTuple):
-    """Largest step times rate, infinite for none.
-
-    held: of the step times the frequency of a mass held by its bristles.
-    """
-
-    predicted: float
-    measured: float
-    held: float = math.inf
-
-
 class MapPoint(NamedTuple):
     """One setting at one rate: the step taken (a usual one), the true error, and the one stated or allowed.
 
@@ -81,15 +70,18 @@ class MapPoint(NamedTuple):
 class MappedSolver:
     """A stepper or peer on the grid; problems: those it can take, integrated: what each point integrates.
 
-    limit: how long its steps may be by the memory of a law; point: what it comes to at a rate and a setting.
+    predicted, measured: the largest step times rate, the latter by the memory of a law; held: the largest step times
+    frequency of a mass held by its bristles; infinite for none. point: what it comes to at a rate and a setting.
     """
 
     name: str
     problems: tuple[str, ...]
     integrated: str
     setting: str
-    limit: Callable[[str], LimitOfSteps]
+    predicted: float
+    measured: Callable[[str], float]
     point: Callable[[StabilityProblem, float, float], MapPoint]
+    held: float = math.inf
 
     def missing(self) -> str | None:
         """How to install it where it is not there, which only heyoka may be."""
@@ -134,9 +126,6 @@ def _stepper(name: str, problems: tuple[str, ...], stepper: StepperName, theta: 
     facts = STEPPERS[stepper]
     bound = math.inf if facts.limited_by_rates else facts.held
 
-    def limit(memory: str) -> LimitOfSteps:
-        return LimitOfSteps(predicted_limit(stepper, theta), stepper_limit(stepper, theta, memory), bound)
-
     def point(problem: StabilityProblem, asked: float, at: float) -> MapPoint:
         known, steps = known_state(problem.name, asked), round(at)
         rate, step = local_rate(problem, known, asked), 2.0 * math.pi / (known.scene.frequency * steps)
@@ -147,7 +136,8 @@ def _stepper(name: str, problems: tuple[str, ...], stepper: StepperName, theta: 
         held = step * quickest_when_held(known.scene, known.law) if math.isfinite(bound) else 0.0
         return MapPoint(at, rate, step, *_answered(method, known, 1e-6), held)
 
-    return MappedSolver(name, problems, MARCHED, "steps", limit, point)
+    predicted, measured = predicted_limit(stepper, theta), partial(stepper_limit, stepper, theta)
+    return MappedSolver(name, problems, MARCHED, "steps", predicted, measured, point, bound)
 
 
 NOT_OFFERED = "march offers theta 0.5 and 1"
@@ -167,10 +157,6 @@ def _answered(method: March, known: KnownState, tolerance: float) -> tuple[str, 
     return found["status"], error, stated, found["reason"]
 
 
-def _limit_of_smoothing(memory: str) -> LimitOfSteps:
-    return LimitOfSteps(predicted_limit("dop853"), stepper_limit("smoothed", 0.5, memory))
-
-
 def _smoothed(problem: StabilityProblem, rate: float, at: float) -> MapPoint:
     """March on smoothed friction at a tolerance, its error that against friction as it is.
 
@@ -187,9 +173,6 @@ def _smoothed(problem: StabilityProblem, rate: float, at: float) -> MapPoint:
 def _peer(name: str, problems: tuple[str, ...]) -> MappedSolver:
     """A solver of solve_ivp, or heyoka: it states no error, so that ten times what was asked is allowed."""
 
-    def limit(memory: str) -> LimitOfSteps:
-        return LimitOfSteps(predicted_limit(name), peer_limit(name))
-
     def point(problem: StabilityProblem, asked: float, at: float) -> MapPoint:
         width = width_at(asked) if problem.name == "smoothing" else None
         known = known_state(problem.name, asked, smoothed=width is not None)
@@ -203,13 +186,17 @@ def _peer(name: str, problems: tuple[str, ...]) -> MappedSolver:
         status, error = "failed" if found.reason else "ok", abs(found.mean - known.mean)
         return MapPoint(at, rate, found.step, status, error, TIMES_ASKED * at + known.error, found.reason)
 
-    return MappedSolver(name, problems, ONE_PERIOD, "tolerance", limit, point)
+    predicted = predicted_limit(name)
+    return MappedSolver(
+        name, problems, ONE_PERIOD, "tolerance", predicted, lambda memory: peer_limit(name), point
+    )
 
 
+_LIMITS_OF_SMOOTHING = predicted_limit("dop853"), partial(stepper_limit, "smoothed", 0.5)
 _STEPPERS = (
     _stepper("rk4", ("bristle", "plane"), "rk4"),
     *(_stepper(f"moreau_{theta:g}", ("plane",), "moreau", theta) for theta in (0.25, 0.5, 0.75, 1.0)),
-    MappedSolver("smoothed", ("smoothing",), CREPT, "tolerance", _limit_of_smoothing, _smoothed),
+    MappedSolver("smoothed", ("smoothing",), CREPT, "tolerance", *_LIMITS_OF_SMOOTHING, _smoothed),
     _stepper("sdirk2", ("bristle",), "sdirk2"),
 )
 MAPPED_STEPPERS = {stepper.name: stepper for stepper in _STEPPERS}

@@ -74,14 +74,10 @@ def _growth_of_bristles(stepper: StepperName, theta: float, z: float) -> float:
 
 def _growth_across(stepper: StepperName, theta: float, z: float) -> float:
     """Of a small velocity across the belt, while the spring balances friction along it."""
-    small = 1e-6
-    scene = Scene(
-        damping_ratio=0.0,
-        normal_load=QUICK / 0.4,
-        belt_speed=1.0,
-        drive=Drive(amplitude=0.0, frequency=2.0 * math.pi * QUICK / z),
-        transverse=Transverse(natural_frequency=1e-3, damping_ratio=0.0, load=Load(amplitude=WEAK)),
-    )
+    small, drive = 1e-6, Drive(amplitude=0.0, frequency=2.0 * math.pi * QUICK / z)
+    across = Transverse(natural_frequency=1e-3, damping_ratio=0.0, load=Load(amplitude=WEAK))
+    load = QUICK / 0.4
+    scene = Scene(damping_ratio=0, normal_load=load, belt_speed=1, drive=drive, transverse=across)
     end = _one_step(scene, Coulomb(mu=0.4), stepper, theta, MarchState(complex(QUICK), complex(0.0, small)))
     return abs(end.v.imag) / small
 

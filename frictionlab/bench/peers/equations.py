@@ -31,12 +31,8 @@ def free_orbit(damping: float, stiffness: float, frequency: float, force: comple
 
 def start(mass: Mass) -> tuple[float, float, float, float]:
     """x1, v1, x2, v2 on the friction-free orbit at t = 0."""
-    along = free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force)
-    across = (0.0, 0.0)
-    if mass.transverse_force != 0:
-        numbers = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
-        across = free_orbit(*numbers)
-    return *along, *across
+    across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
+    return (*free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force), *free_orbit(*across))
 
 
 class Equations(ABC):

@@ -7,7 +7,7 @@ from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
     "analysis": 2119,
-    "bench": 2204,
+    "bench": 2185,
     "beside the rooms": 87,
     "charts": 1775,
     "cli": 981,
@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 841,
     "tools": 19,
     "values": 1421,
-    "tests": 26040,
+    "tests": 26013,
     "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

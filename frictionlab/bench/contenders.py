@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
@@ -28,6 +30,17 @@ FOLDER = ContextVar("FOLDER", default=Path())
 AtLeastOne = Annotated[int, Field(strict=True, ge=1)]
 FILLED: Any = Field(min_length=1)
 _RecordT = TypeVar("_RecordT", bound=Record)
+
+
+def names_of(known: Mapping[str, Any]) -> Any:
+    """Type of a list of names, each read as what it stands for."""
+
+    def named(name: Any) -> Any:
+        if not isinstance(name, str) or name not in known:
+            raise ValueError(f"must be one of {', '.join(map(repr, known))}")
+        return known[name]
+
+    return Annotated[tuple[Annotated[Any, BeforeValidator(named)], ...], FILLED]
 
 
 class Setting(NamedTuple):
@@ -72,7 +85,12 @@ class Reference(NamedTuple):
     kind: str
     tolerance: float
     solver: Method | Peer | None = None
-    values: pd.Series | None = None
+    values: Mapping[float, float] | None = None
+
+    def value(self, speed: float) -> float:
+        """Mean at this belt speed, give or take its last digits; NaN where there is none."""
+        near = (mean for at, mean in (self.values or {}).items() if math.isclose(at, speed, rel_tol=1e-12))
+        return next(near, math.nan)
 
 
 def built(kind: type[_RecordT], given: Any) -> _RecordT:
@@ -161,14 +179,14 @@ def _reference(given: Any) -> Reference:
     return Reference(f"{made.label} at {setting.tolerance:g}", made.kind, setting.tolerance, setting.solver)
 
 
-def _table(file: str) -> pd.Series:
+def _table(file: str) -> dict[float, float]:
     """Mean friction by belt speed."""
     try:
         table = pd.read_csv(FOLDER.get() / file, dtype=str)[REFERENCE_COLUMNS].astype(float)
     except (OSError, KeyError, ValueError) as problem:
         what = f"must be a CSV file of numbers with the columns {' and '.join(REFERENCE_COLUMNS)}"
         raise ValueError(f"values: {what}: {problem}") from None
-    return table.set_index("belt_speed")["mean_friction"]
+    return dict(table.to_numpy().tolist())
 
 
 AMethod = Annotated[Any, BeforeValidator(lambda given: _contender(given, peers=False))]

@@ -38,7 +38,7 @@ _HALVINGS = 30
 class NamedPoint(Record):
     """A point of a map with a name: its belt speed [scene velocity] and the value of the other quantity."""
 
-    name: str
+    name: Annotated[str, FILLED]
     belt_speed: Finite
     value: Finite
 
@@ -132,13 +132,10 @@ class FailureMap(OwnBlock):
         """Every point, those of the grid first."""
 
         def told(row: MapRow) -> pd.DataFrame:
-            found: dict[str, Any] = {
-                "map": self.name,
-                "quantity": self.paths[1],
-                "belt_speed": row.scenes.belt_speeds,
-            }
-            found |= {"value": row.value, "friction_to_load": row.friction_to_load}
-            return pd.DataFrame(found | {"ordinate": self.ordinate(row), "point": row.name})
+            found: dict[str, Any] = {"map": self.name, "quantity": self.paths[1]}
+            found |= {"belt_speed": row.scenes.belt_speeds, "value": row.value}
+            found |= {"friction_to_load": row.friction_to_load, "ordinate": self.ordinate(row)}
+            return pd.DataFrame(found | {"point": row.name})
 
         return self._of_rows(told)
 
@@ -158,12 +155,11 @@ class FailureMap(OwnBlock):
         for a peer above ten times the tolerance asked, each with the reference's own error added.
         """
         (setting,) = contender.settings
-        found = self._of_rows(
-            lambda row: solve_points(setting.solver, row.scenes, row.law, setting.tolerance)
-        )
+        solver, asked = setting.solver, setting.tolerance
+        found = self._of_rows(lambda row: solve_points(solver, row.scenes, row.law, asked))
         trusted, ok = self._trusted(contender.kind), found["status"] == "ok"
         off, stated = (found["mean"] - trusted["mean"]).abs().where(ok), found["error"].where(ok)
-        claimed = stated if contender.side == "method" else PEER_MARGIN * setting.tolerance
+        claimed = stated if contender.side == "method" else PEER_MARGIN * asked
         told = {"outcome": found["status"].mask(off > claimed + trusted["error"], "silent")}
         told |= {"reason": found["reason"], "stated_error": stated, "true_error": off}
         told |= {"reference": trusted["reference"], "reference_error": trusted["error"]}
@@ -184,15 +180,11 @@ class FailureMap(OwnBlock):
     def picture(self, table: pd.DataFrame) -> FailurePicture:
         """The map with the points of a solver."""
         ordinates = np.array([self.ordinate(row) for row in self.grid_rows])
-        rising = np.argsort(ordinates)
-        x, shape = self.grid_rows[0].scenes.belt_speeds, (len(rising), -1)
+        rising, x = np.argsort(ordinates), self.grid_rows[0].scenes.belt_speeds
         grid = table[table["point"] == ""].sort_values("ordinate", kind="stable")
-        borders = {name: where.reshape(shape)[rising] for name, where in self.motions().items()}
-        named = table[table["point"] != ""]
-        across, free = self._across(), self.free_velocities()[rising]
-        return FailurePicture(
-            self.name, across, x, ordinates[rising], grid, named, free, self.edges(), borders
-        )
+        found = {name: where.reshape(-1, len(x))[rising] for name, where in self.motions().items()}
+        named, y, free = table[table["point"] != ""], ordinates[rising], self.free_velocities()[rising]
+        return FailurePicture(self.name, self._across(), x, y, grid, named, free, self.edges(), found)
 
     def _across(self) -> str:
         quantity = self.paths[1]

@@ -55,8 +55,15 @@ class ModelsBlock(OwnBlock):
 
     def _simpler(self) -> Iterator[tuple[str, Study]]:
         for index, part in enumerate(self.without):
-            if (left := _cut(self.scene, part)) is None:
-                raise ValueError(f"without[{index}]: the scene has no '{part}'; give the path of a key of it")
+            left = inside = deepcopy(self.scene)
+            *above, key = part.split(".")
+            try:
+                for name in above:
+                    inside = inside[name]
+                del inside[key]
+            except (KeyError, TypeError):
+                what = f"the scene has no '{part}'; give the path of a key of it"
+                raise ValueError(f"without[{index}]: {what}") from None
             yield f"without {part}", self.study_of(scene=left)
 
 
@@ -90,9 +97,8 @@ class ModelsSection:
         table["model"] = table.apply(model_label, axis=1)
         best, title = front(table), block.title or self.name
         on_front = np.where(table.index.isin(best.index), "yes", "no")
-        shown = table.loc[:, ~table.columns.str.contains(OF_CURVES_ALONE)].rename(
-            columns={"solver": "method"}
-        )
+        shown = table.loc[:, ~table.columns.str.contains(OF_CURVES_ALONE)]
+        shown = shown.rename(columns={"solver": "method"})
         shown.insert(shown.columns.get_loc("reference"), "front", on_front)
         head = f"{self.name}: errors against {table['model'][0]} ({block.references[0].label})"
         figure = partial(models_figure, title, table, best, largest_error(known))
@@ -123,15 +129,3 @@ def front(table: pd.DataFrame) -> pd.DataFrame:
         if error < NOTICEABLY * least:
             best, least = [*best, at], error
     return rising.loc[best]
-
-
-def _cut(scene: Any, part: str) -> dict[str, Any] | None:
-    """The scene without the key at this path; None where it has none."""
-    left = inside = deepcopy(scene)
-    *above, key = part.split(".")
-    for name in above:
-        inside = inside.get(name) if isinstance(inside, dict) else None
-    if not isinstance(inside, dict) or key not in inside:
-        return None
-    del inside[key]
-    return dict(left)

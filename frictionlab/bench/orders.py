@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from frictionlab.bench.charts import orders_figure
-from frictionlab.bench.contenders import FILLED, AtLeastOne
+from frictionlab.bench.contenders import AtLeastOne, names_of
 from frictionlab.bench.order_solvers import MOTIONS, ORDER_SOLVERS, KindOfMotion, OrderSolver
-from frictionlab.bench.result import SectionResult, Tell, one_of
+from frictionlab.bench.result import SectionResult, Tell
 from frictionlab.bench.solve import solve_points
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
@@ -165,10 +165,8 @@ class OrdersSection(Record):
 
     name: ClassVar[str] = "orders"
 
-    motions: Annotated[tuple[Annotated[Any, one_of(MOTIONS)], ...], FILLED] = (*MOTIONS.values(),)
-    steppers: Annotated[tuple[Annotated[Any, one_of(ORDER_SOLVERS)], ...], FILLED] = (
-        *ORDER_SOLVERS.values(),
-    )
+    motions: names_of(MOTIONS) = (*MOTIONS.values(),)  # type: ignore[valid-type]
+    steppers: names_of(ORDER_SOLVERS) = (*ORDER_SOLVERS.values(),)  # type: ignore[valid-type]
     samples: AtLeastOne = 40
 
     def measure(self, tell: Tell) -> SectionResult:

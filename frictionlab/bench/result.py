@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import pandas as pd
-from pydantic import BeforeValidator
 
 Tell = Callable[[str], None]
 """Says what is measured now."""
@@ -44,17 +43,6 @@ class Section(Protocol):
 
     def measure(self, tell: Tell) -> SectionResult:
         """Measure it, telling what is under way."""
-
-
-def one_of(known: Mapping[str, Any]) -> BeforeValidator:
-    """Reads a name in a list as what it stands for."""
-
-    def named(name: Any) -> Any:
-        if not isinstance(name, str) or name not in known:
-            raise ValueError(f"must be one of {', '.join(map(repr, known))}")
-        return known[name]
-
-    return BeforeValidator(named)
 
 
 def nothing_measured(name: str, title: str, why: str) -> SectionResult:

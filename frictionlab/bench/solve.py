@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import math
 import os
 import pickle
 import subprocess
@@ -76,7 +75,7 @@ def known_means(
     """
     solver, tolerance = reference.solver, reference.tolerance
     if solver is None:
-        means = np.array([_value(reference.values, scene.belt_speed) for scene in scenes])
+        means = np.array([reference.value(scene.belt_speed) for scene in scenes])
         return pd.DataFrame({"mean": means, "error": np.where(np.isnan(means), np.nan, tolerance)})
     found = solve_points(solver, scenes, law, tolerance, more)
     if isinstance(solver, Peer):
@@ -84,16 +83,6 @@ def known_means(
         found["error"] = CAREFUL * ((loose["mean"] - found["mean"]).abs() + tolerance)
     good = (found["status"] == "ok") & np.isfinite(found["error"])
     return found.assign(mean=found["mean"].where(good), error=found["error"].where(good))
-
-
-def _value(values: pd.Series | None, speed: float) -> float:
-    """Mean friction at this belt speed, give or take its last digits; NaN where there is none."""
-    near = (mean for at, mean in (values if values is not None else {}).items() if _same(at, speed))
-    return next(near, math.nan)
-
-
-def _same(one: float, other: float) -> bool:
-    return math.isclose(one, other, rel_tol=1e-12)
 
 
 def whole_task(

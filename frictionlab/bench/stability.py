@@ -12,8 +12,8 @@ import pandas as pd
 from pydantic import Field
 
 from frictionlab.bench.charts import stability_figure
-from frictionlab.bench.contenders import FILLED
-from frictionlab.bench.result import SectionResult, Tell, nothing_measured, one_of
+from frictionlab.bench.contenders import names_of
+from frictionlab.bench.result import SectionResult, Tell, nothing_measured
 from frictionlab.bench.stability_problems import PROBLEMS, StabilityProblem
 from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS, REGIONS, MappedSolver
 from frictionlab.values.quantities import Record
@@ -87,9 +87,9 @@ def line(name: str, table: pd.DataFrame) -> str:
 class StabilityMaps(Record):
     """Which steppers and peers, all where neither is named; on which problems; a grid of how many by how many."""
 
-    steppers: Annotated[tuple[Annotated[Any, one_of(MAPPED_STEPPERS)], ...], FILLED] = ()
-    peers: Annotated[tuple[Annotated[Any, one_of(MAPPED_PEERS)], ...], FILLED] = ()
-    problems: Annotated[tuple[Annotated[Any, one_of(PROBLEMS)], ...], FILLED] = (*PROBLEMS.values(),)
+    steppers: names_of(MAPPED_STEPPERS) = ()  # type: ignore[valid-type]
+    peers: names_of(MAPPED_PEERS) = ()  # type: ignore[valid-type]
+    problems: names_of(PROBLEMS) = (*PROBLEMS.values(),)  # type: ignore[valid-type]
     grid: Annotated[int, Field(strict=True, ge=2)] = 70
     """Settings, and rates: about 5,000 points a stepper and problem."""
 

@@ -179,12 +179,15 @@ def _peer(name: str, problems: tuple[str, ...]) -> MappedSolver:
         (x, v, z), rate = known.state, local_rate(problem, known, asked)
         bristle = known.law.memory_kind == "bristle"
         state = np.array([x.real, v.real, *([float(z[0].real)] if bristle else [x.imag, v.imag]), 0.0])
-        if name == "heyoka":
-            found = by_heyoka(known.scene, known.law, state, width, at)
-        else:
-            found = by_scipy(name, equations_of(known.scene, known.law, width), state, at)
-        status, error = "failed" if found.reason else "ok", abs(found.mean - known.mean)
-        return MapPoint(at, rate, found.step, status, error, TIMES_ASKED * at + known.error, found.reason)
+        allowed = TIMES_ASKED * at + known.error
+        try:
+            if name == "heyoka":
+                mean, step = by_heyoka(known.scene, known.law, state, width, at)
+            else:
+                mean, step = by_scipy(name, equations_of(known.scene, known.law, width), state, at)
+        except (ArithmeticError, ValueError) as problem:
+            return MapPoint(at, rate, math.nan, "failed", math.nan, allowed, str(problem))
+        return MapPoint(at, rate, step, "ok", abs(mean - known.mean), allowed, "")
 
     predicted = predicted_limit(name)
     return MappedSolver(

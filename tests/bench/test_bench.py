@@ -373,7 +373,7 @@ def test_the_lists_of_the_documents_have_no_mistakes_and_values_at_their_belt_sp
     assert [each.name for each in curves][:8] == ["W1", "W1g", "W2", "W5", "W3_0.5", "W3_4", "W3_10", "W4a"]
     for work in (each.work for each in curves):
         for values in (each.values for each in work.references if each.values is not None):
-            assert all(np.isclose(work.speeds, at, rtol=1e-13, atol=0.0).any() for at in values.index)
+            assert all(np.isclose(work.speeds, at, rtol=1e-13, atol=0.0).any() for at in values)
             assert len(values) >= 0.5 * len(work.speeds)
 
 

@@ -218,12 +218,12 @@ _OUTLINED = [withStroke(linewidth=2.4, foreground="black")]
 
 
 def _hatch(
-    axes: Axes, x: Floats, y: Floats, where: Mask, edgecolor: str, facecolor: str = "none", **look: Any
+    axes: Axes, x: Floats, y: Floats, where: Mask, edgecolor: str, facecolor: str = "none", hatch: str = ""
 ) -> None:
     """Mark all cells of a kind between these edges."""
     if where.any():
         cells, (x, y) = where.repeat(2, axis=0).repeat(2, axis=1), (x.repeat(2)[1:-1], y.repeat(2)[1:-1])
-        marked = axes.contourf(x, y, cells, [0.5, 1.5], colors=[facecolor], zorder=1.5, **look)
+        marked = axes.contourf(x, y, cells, [0.5, 1.5], colors=[facecolor], hatches=[hatch], zorder=1.5)
         marked.set(edgecolor=edgecolor, linewidth=0.0)
 
 
@@ -266,7 +266,7 @@ def _draw_stability(axes: Axes, points: pd.DataFrame) -> Any:
     y, steps = cells["rate"][:, 0], first["setting"] == "steps"
     errors, mesh = np.ma.masked_invalid(np.clip(cells["error"], BEST, WORST)), (cell_edges(x), cell_edges(y))
     colors = axes.pcolormesh(*mesh, errors, norm=LogNorm(BEST, WORST), cmap="cividis", rasterized=True)
-    _hatch(axes, *mesh, cells["region"] == "wrong_and_said", "black", hatches=["////"])
+    _hatch(axes, *mesh, cells["region"] == "wrong_and_said", "black", hatch="////")
     silent = points[points["region"] == "wrong_and_silent"]
     axes.plot(silent["value"], silent["rate"], **(CROSS | {"markersize": 2.2}))
     axes.set(facecolor="0.85", xscale="log", yscale="log", ylim=(y.min(), y.max()))
@@ -362,13 +362,16 @@ def failures_figure(
     bar = figure.colorbar(mesh, ax=panels, location="right", ticks=_LEVELS, shrink=min(1.0, 2.0 / len(maps)))
     bar.set_label("error of the mean friction")
     bar.ax.set_yticklabels([f"$10^{{{round(math.log10(level))}}}$" for level in _LEVELS])
-    entries: list[Any] = [Patch(linewidth=0.4, label=name, **look) for name, look in _WITHOUT_ERROR.items()]
-    entries += [_entry("wrong without a word", CROSS)]
-    entries += [_entry(name, look | _LINE) for name, look in _LINES.items()]
     look = {"ncols": 4, "columnspacing": 1.2, "title": below or None}
-    figure.legend(handles=entries, loc="outside lower center", **look)
+    figure.legend(handles=_failures_legend(), loc="outside lower center", **look)
     figure.suptitle(title, x=0.01, ha="left", fontsize=8)
     return figure
+
+
+def _failures_legend() -> list[Any]:
+    entries: list[Any] = [Patch(linewidth=0.4, label=name, **look) for name, look in _WITHOUT_ERROR.items()]
+    entries += [_entry("wrong without a word", CROSS)]
+    return entries + [_entry(name, look | _LINE) for name, look in _LINES.items()]
 
 
 def _draw_failures(axes: Axes, drawn: FailurePicture, kind: str, colors: ListedColormap) -> Any:
@@ -383,25 +386,28 @@ def _draw_failures(axes: Axes, drawn: FailurePicture, kind: str, colors: ListedC
         undecided = (outcome == "ok") & (cells["stated_error"] < cells["true_error"])
         told["reference too coarse to tell"] = undecided
     for name, look in _WITHOUT_ERROR.items():
-        colors_of = {key: look[key] for key in ("facecolor", "edgecolor")}
-        cells_of = told.get(name, outcome == name.replace(" ", "_"))
-        _hatch(axes, x, y, cells_of, hatches=[look.get("hatch", "")], **colors_of)
+        _hatch(axes, x, y, told.get(name, outcome == name.replace(" ", "_")), **look)
     for name, values, edges in (("x", drawn.x, x), ("y", drawn.y, y)):
         log = is_logarithmic(values)
         axes.set(**{f"{name}scale": "log" if log else "linear", f"{name}lim": (edges[0], edges[-1])})
         _number_ticks(getattr(axes, f"{name}axis"), log)
+    _draw_theory(axes, drawn)
+    rows, columns = np.nonzero(outcome == "silent")
+    axes.plot(drawn.x[columns], drawn.y[rows], **CROSS)
+    _name_points(axes, drawn.named)
+    return mesh
+
+
+def _draw_theory(axes: Axes, drawn: FailurePicture) -> None:
+    """Lines of theory, and those that are read from the motion of the first reference."""
     axes.plot(drawn.free, drawn.y, **(_LINES["V_lin"] | _LINE | {"zorder": 3.5}))
     for name, ordinate in ((name, each) for name, found in drawn.edges.items() for each in found):
         axes.axhline(ordinate, **(_LINES[name] | _LINE))
     for name, where in drawn.borders.items():
         if (where == 0.0).any() and (where == 1.0).any():
-            look = {f"{key}s": [value] for key, value in _LINES[name].items()}
+            look: Look = {f"{key}s": [value] for key, value in _LINES[name].items()}
             border = axes.contour(drawn.x, drawn.y, where, levels=[0.5], linewidths=1.1, zorder=3, **look)
             border.set(path_effects=_OUTLINED)
-    rows, columns = np.nonzero(outcome == "silent")
-    axes.plot(drawn.x[columns], drawn.y[rows], **CROSS)
-    _name_points(axes, drawn.named)
-    return mesh
 
 
 def _number_ticks(axis: Axis, logarithmic: bool) -> None:

@@ -202,24 +202,22 @@ def _prices(work: Workload, scenes: list[Scene], setting: Setting) -> dict[str, 
 
     Of a peer the first two are the same. Of a prescribed slip a reduced model leaves nothing out.
     """
-    solver, law, tolerance = setting.solver, work.law, setting.tolerance
-    spent = dict.fromkeys(("mean", "all", "model"), np.array([]))
+    solver, law = setting.solver, work.law
 
-    def timed(task: Callable[[], object]) -> Floats:
-        task()
+    def timed(task: Callable[[], object], warm: bool = False) -> Floats:
+        if not warm:
+            task()
         return time_task(task, work.repeats, work.seconds)
 
+    mean = whole = model = np.array([])
     if scenes:
-        spent["mean"] = spent["all"] = time_task(
-            lambda: solver.solve(scenes, law, tolerance), work.repeats, work.seconds
-        )
+        mean = whole = timed(lambda: solver.solve(scenes, law, setting.tolerance), warm=True)
         if not isinstance(solver, Peer):
-            spent["all"] = timed(whole_task(solver, scenes, law, tolerance))
+            whole = timed(whole_task(solver, scenes, law, setting.tolerance))
         if isinstance(solver, ReducedModel) and scenes[0].degrees_of_freedom > 0:
-            spent["model"] = timed(lambda: solver.model_means(scenes, law))
-    told = {
-        key: each for name, times in spent.items() for key, each in times_of(name, times, len(scenes)).items()
-    }
+            model = timed(lambda: solver.model_means(scenes, law))
+    points = len(scenes)
+    told = times_of("mean", mean, points) | times_of("all", whole, points) | times_of("model", model, points)
     return told | {"error_us": told["mean_us"] - told["model_us"]}
 
 

@@ -16,7 +16,7 @@ from frictionlab.values.notes import StudyError
 OF_A_STUDY = ("scene", "laws", "sweep")
 
 
-class Block(Measured):
+class BenchBlock(Measured):
     """A study, whose keys are checked by the reader of studies, and who is measured on it."""
 
     name: str
@@ -40,13 +40,13 @@ class Block(Measured):
             raise ValueError(": ".join(filter(None, (told.path, told.what, told.hint)))) from None
 
     @model_validator(mode="after")
-    def _is_a_study(self) -> Block:
+    def _is_a_study(self) -> BenchBlock:
         """Read the study now, so that the mistakes in it are those of the list."""
         _ = self.study
         return self
 
 
-class OwnBlock(Block):
+class OwnBlock(BenchBlock):
     """A study that takes nothing from the rest of its list: who is measured and against whom is its own."""
 
     sweep: Any

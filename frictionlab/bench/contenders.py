@@ -25,7 +25,7 @@ from frictionlab.values.validation import build_record
 PEERS: dict[str, type[Peer]] = {peer.name: peer for peer in (ScipySteps, ScipyEvents, ScipyBristle, Heyoka)}
 """Other libraries by the names that a list gives them."""
 REFERENCE_COLUMNS = ["belt_speed", "mean_friction"]
-FOLDER = ContextVar("FOLDER", default=Path())
+LIST_FOLDER = ContextVar("LIST_FOLDER", default=Path())
 """Folder of the list that is read: files of reference values are relative to it."""
 AtLeastOne = Annotated[int, Field(strict=True, ge=1)]
 FILLED: Any = Field(min_length=1)
@@ -43,7 +43,7 @@ def names_of(known: Mapping[str, Any]) -> Any:
     return Annotated[tuple[Annotated[Any, BeforeValidator(named)], ...], FILLED]
 
 
-class Setting(NamedTuple):
+class BenchSetting(NamedTuple):
     """A solver, the tolerance it is asked for, and the quantity that is varied with its value, '' where none is."""
 
     quantity: str
@@ -61,7 +61,7 @@ class Contender(NamedTuple):
 
     label: str
     kind: str
-    settings: tuple[Setting, ...]
+    settings: tuple[BenchSetting, ...]
     points: int | None
 
     @property
@@ -75,7 +75,7 @@ class Contender(NamedTuple):
         return solver.missing() if isinstance(solver, Peer) else None
 
 
-class Reference(NamedTuple):
+class ReferenceSource(NamedTuple):
     """A source of reference values: a method or peer at a tolerance, or means by belt speed, known to an error.
 
     kind: of the method or peer, '' for values. tolerance: asked of the solver, or the error of the values.
@@ -145,10 +145,10 @@ def _contender(given: Any, peers: bool) -> Contender:
     return Contender(str(told.get("label", kind)), kind, settings, told.get("points"))
 
 
-def _setting(quantity: str, value: float, told: dict[str, Any], peers: bool) -> Setting:
+def _setting(quantity: str, value: float, told: dict[str, Any], peers: bool) -> BenchSetting:
     asked = {key: told[key] for key in _Asked.model_fields if key in told}
     own = {key: told[key] for key in told if key not in asked}
-    return Setting(quantity, value, built(_Asked, asked).tolerance, _solver(own, peers))
+    return BenchSetting(quantity, value, built(_Asked, asked).tolerance, _solver(own, peers))
 
 
 def _solver(told: dict[str, Any], peers: bool) -> Method | Peer:
@@ -167,22 +167,23 @@ def _solver(told: dict[str, Any], peers: bool) -> Method | Peer:
     return built(PEERS[str(name)], {key: told[key] for key in told if key not in ("kind", "label")})
 
 
-def _reference(given: Any) -> Reference:
+def _reference(given: Any) -> ReferenceSource:
     """Read a table of values, or a method or peer with the tolerance it is to be solved to."""
     if "values" in mapping(given):
         known = built(_ValuesOfFile, given)
-        return Reference(known.label or known.values, "", known.error, values=_table(known.values))
+        return ReferenceSource(known.label or known.values, "", known.error, values=_table(known.values))
     made = _contender(given, peers=given.get("kind") in PEERS)
     if "tolerance" not in given or made.points or len(made.settings) > 1:
         raise ValueError("tolerance: give the one that the reference is solved to, and no points")
     (setting,) = made.settings
-    return Reference(f"{made.label} at {setting.tolerance:g}", made.kind, setting.tolerance, setting.solver)
+    closely, solver = setting.tolerance, setting.solver
+    return ReferenceSource(f"{made.label} at {closely:g}", made.kind, closely, solver)
 
 
 def _table(file: str) -> dict[float, float]:
     """Mean friction by belt speed."""
     try:
-        table = pd.read_csv(FOLDER.get() / file, dtype=str)[REFERENCE_COLUMNS].astype(float)
+        table = pd.read_csv(LIST_FOLDER.get() / file, dtype=str)[REFERENCE_COLUMNS].astype(float)
     except (OSError, KeyError, ValueError) as problem:
         what = f"must be a CSV file of numbers with the columns {' and '.join(REFERENCE_COLUMNS)}"
         raise ValueError(f"values: {what}: {problem}") from None

@@ -6,7 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
 from typing import Annotated, Any
@@ -15,9 +15,9 @@ import numpy as np
 import pandas as pd
 from pydantic import AfterValidator, model_validator
 
-from frictionlab.bench.blocks import Block, refuse_other_sweeps
+from frictionlab.bench.blocks import BenchBlock, refuse_other_sweeps
 from frictionlab.bench.charts import curve_figure
-from frictionlab.bench.contenders import Contender, Reference, Setting
+from frictionlab.bench.contenders import BenchSetting, Contender, ReferenceSource
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.result import SectionResult, Tell
 from frictionlab.bench.solve import first_run, known_means, solve_points, time_task, whole_task
@@ -28,12 +28,12 @@ from frictionlab.scene.scene import Scene
 from frictionlab.study.study import Study
 from frictionlab.values.quantities import Floats
 
-Known = Sequence[tuple[Reference, pd.DataFrame]]
+KnownReferences = Sequence[tuple[ReferenceSource, pd.DataFrame]]
 """References with mean and error at each point."""
-STATUSES = ("ok", "refused", "failed", "not_unique")
+BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
 ANSWERED = ("ok", "not_unique")
 """Points that are worth timing."""
-CAPTION = (
+CURVE_CAPTION = (
     "Lower is nearer the reference, further left is cheaper: read what each error costs along a level line."
 )
 
@@ -44,7 +44,7 @@ def _of_a_file(name: str) -> str:
     return name
 
 
-class CurveBlock(Block):
+class CurveBlock(BenchBlock):
     """An item of ``scenes``."""
 
     name: Annotated[str, AfterValidator(_of_a_file)]
@@ -64,7 +64,7 @@ class Workload:
 
     scenes: tuple[Scene, ...]
     law: FrictionLaw
-    references: tuple[Reference, ...]
+    references: tuple[ReferenceSource, ...]
     repeats: int
     seconds: float
 
@@ -73,13 +73,13 @@ class Workload:
         """The belt speeds."""
         return [scene.belt_speed for scene in self.scenes]
 
-    def known(self) -> Known:
+    def known(self) -> KnownReferences:
         """Every reference with what it knows of each point."""
         return [(each, known_means(each, self.scenes, self.law)) for each in self.references]
 
 
 def workloads(
-    study: Study, references: tuple[Reference, ...], repeats: int, seconds: float
+    study: Study, references: tuple[ReferenceSource, ...], repeats: int, seconds: float
 ) -> Iterator[tuple[str, Workload]]:
     """The curve of each law, by its label."""
     for along in study.curves():
@@ -116,9 +116,8 @@ class BenchCurve:
             partial(curve_figure, title, table, largest_error(known)),
             curve_summary(self.name, table),
         )
-        return SectionResult(
-            self.name, self.title, table, said, figure, CAPTION, "curve", notes=notes, left_out=missing
-        )
+        drawn = SectionResult(self.name, self.title, table, said, figure, CURVE_CAPTION)
+        return replace(drawn, kind="curve", notes=notes, left_out=missing)
 
     def _named(self) -> dict[str, str]:
         law = self.work.law
@@ -126,12 +125,12 @@ class BenchCurve:
         return {"scene": self.name, "law": kind}
 
 
-def largest_error(known: Known) -> float:
+def largest_error(known: KnownReferences) -> float:
     """The largest error of any reference, NaN without one."""
     return float(pd.concat([found["error"] for _, found in known]).max())
 
 
-def _reference_lines(known: Known, table: pd.DataFrame) -> list[str]:
+def _reference_lines(known: KnownReferences, table: pd.DataFrame) -> list[str]:
     """Who is measured against what, how well that is known, and how far the references are apart."""
     lines = []
     for reference, found in known:
@@ -152,7 +151,7 @@ def chosen(size: int, points: int | None) -> list[int]:
 
 
 def measured_row(
-    work: Workload, known: Known, contender: Contender, setting: Setting, first: bool = False
+    work: Workload, known: KnownReferences, contender: Contender, setting: BenchSetting, first: bool = False
 ) -> dict[str, Any]:
     """A row of a table: errors against the first reference of another kind that knows a point, times [us] a point."""
     solver, places = setting.solver, chosen(len(work.scenes), contender.points)
@@ -169,7 +168,7 @@ def measured_row(
     row = {
         **{"solver": contender.label, "side": contender.side},
         **{"quantity": setting.quantity, "value": setting.value, "points": len(places)},
-        **{status: int((found["status"] == status).sum()) for status in STATUSES},
+        **{status: int((found["status"] == status).sum()) for status in BENCH_STATUSES},
         **_errors(found, trusted, contender.side),
         **_prices(work, answered, setting),
         **{"first_run_s": math.nan, "reference": label, "reference_error": known_to},
@@ -197,7 +196,7 @@ def _reason(found: pd.DataFrame, row: dict[str, Any]) -> str:
     return "the reference has no value" if row["reference"] else "no independent reference"
 
 
-def _prices(work: Workload, scenes: list[Scene], setting: Setting) -> dict[str, Any]:
+def _prices(work: Workload, scenes: list[Scene], setting: BenchSetting) -> dict[str, Any]:
     """Times per point [us]: of mean friction with its error, of every column, of a reduced model without its error.
 
     Of a peer the first two are the same. Of a prescribed slip a reduced model leaves nothing out.

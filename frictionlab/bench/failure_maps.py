@@ -15,7 +15,7 @@ from pydantic import model_validator
 
 from frictionlab.bench.blocks import OwnBlock
 from frictionlab.bench.charts import FailurePicture
-from frictionlab.bench.contenders import FILLED, Contender, Reference, built
+from frictionlab.bench.contenders import FILLED, Contender, ReferenceSource, built
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.solve import known_means, solve_points
 from frictionlab.laws.base import FrictionLaw
@@ -140,12 +140,12 @@ class FailureMap(OwnBlock):
         return self._of_rows(told)
 
     @cached_property
-    def known(self) -> list[tuple[Reference, pd.DataFrame]]:
+    def known(self) -> list[tuple[ReferenceSource, pd.DataFrame]]:
         """What every reference says of every point, the first method with the columns of ``MOTION``."""
         first = next((each for each in self.references if not isinstance(each.solver, Peer)), None)
         return [(each, self._known(each, MOTION if each is first else ())) for each in self.references]
 
-    def _known(self, reference: Reference, more: Sequence[str]) -> pd.DataFrame:
+    def _known(self, reference: ReferenceSource, more: Sequence[str]) -> pd.DataFrame:
         return self._of_rows(lambda row: known_means(reference, row.scenes, row.law, more))
 
     def measured(self, contender: Contender) -> pd.DataFrame:

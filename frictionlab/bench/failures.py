@@ -17,8 +17,8 @@ from frictionlab.bench.result import SectionResult, Tell, file_stem, nothing_mea
 
 OUTCOMES = ("ok", "refused", "failed", "not_unique", "silent")
 """What a point can come to."""
-WORDS = {"not_unique": "not unique", "silent": "wrong, silent"}
-CAPTION = (
+OUTCOME_WORDS = {"not_unique": "not unique", "silent": "wrong, silent"}
+MAPS_CAPTION = (
     "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
     "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
 )
@@ -51,7 +51,7 @@ class FailureSection:
             tables.append(drawn.measured(contender))
         table, figure = pd.concat(tables).drop(columns="ordinate"), partial(self._figure, title, tables)
         said = failures_summary(title, table)
-        return SectionResult(self.name, title, table, said, figure, CAPTION, style=style)
+        return SectionResult(self.name, title, table, said, figure, MAPS_CAPTION, style=style)
 
     def _figure(self, title: str, tables: Sequence[pd.DataFrame]) -> Any:
         """The maps that are not refused everywhere, the others in words."""
@@ -74,7 +74,7 @@ def failures_summary(title: str, table: pd.DataFrame) -> str:
     counts = pd.crosstab(table["map"], table["outcome"]).reindex(table["map"].unique())
     counts = counts.reindex(columns=list(OUTCOMES), fill_value=0)
     known, wide = table.groupby("map")["reference_error"].median(), max(map(len, counts.index))
-    heads = [*(WORDS.get(each, each) for each in OUTCOMES), "known to"]
+    heads = [*(OUTCOME_WORDS.get(each, each) for each in OUTCOMES), "known to"]
     lines = [f"{title}: points", " " * wide + "".join(f"{head:>14}" for head in heads)]
     for name, row in counts.iterrows():
         told = f"{known[name]:.0e}" if known[name] == known[name] else ""

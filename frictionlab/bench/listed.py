@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from frictionlab.bench.contenders import FILLED, FOLDER, AtLeastOne, Measured, built
+from frictionlab.bench.contenders import FILLED, LIST_FOLDER, AtLeastOne, Measured, built
 from frictionlab.bench.curve import BenchCurve, CurveBlock, workloads
 from frictionlab.bench.failure_maps import FailureMap
 from frictionlab.bench.failures import failure_sections
@@ -99,12 +99,12 @@ class Bench:
 
 def load_bench(path: FilePath) -> Bench:
     """Read the bench list of a file. Raises StudyError with its mistakes."""
-    source, token = _source(path), FOLDER.set(path.parent)
+    source, token = _source(path), LIST_FOLDER.set(path.parent)
     notes = Notes(source.notes)
     try:
         keys = build_record(ListKeys, source.tree, (), notes)
     finally:
-        FOLDER.reset(token)
+        LIST_FOLDER.reset(token)
     sections = [] if keys is None else _sections(keys, notes)
     if notes.all:
         raise StudyError(source.located(notes.all))

@@ -20,7 +20,7 @@ from frictionlab.bench.result import SectionResult, Tell, file_stem
 from frictionlab.study.study import Study
 from frictionlab.values.quantities import Positive
 
-CAPTION = (
+MODELS_CAPTION = (
     "Every law, scene and method on one chart: how far the mean friction is from that of the richest model, against "
     "the time of a point with its error. Points on the line are the front: nothing cheaper is nearer. Colours are "
     "models, marks are methods; a dotted tail leads to what a reduced model costs without its error."
@@ -102,7 +102,7 @@ class ModelsSection:
         shown.insert(shown.columns.get_loc("reference"), "front", on_front)
         head = f"{self.name}: errors against {table['model'][0]} ({block.references[0].label})"
         figure = partial(models_figure, title, table, best, largest_error(known))
-        return SectionResult(self.name, block.title, shown, _summary(head, best), figure, CAPTION)
+        return SectionResult(self.name, block.title, shown, _summary(head, best), figure, MODELS_CAPTION)
 
 
 def _summary(head: str, best: pd.DataFrame) -> str:

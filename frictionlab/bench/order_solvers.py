@@ -80,7 +80,7 @@ CLOSED_ORBIT = 1e-13
 """Distance from the closed orbit, in the norm of energy."""
 LAPS = 3000
 GOLDEN_PHASE = 0.5 * (math.sqrt(5.0) - 1.0)
-WIDTHS = np.array([2.0 * 0.5**k for k in range(12)])
+HALVED_WIDTHS = np.array([2.0 * 0.5**k for k in range(12)])
 ACCURACY = 1e-12
 """Of steps on smoothed friction, so short that the width alone matters."""
 TOLERANCES = np.array([1e-2 * 0.1**k for k in range(9)])
@@ -144,9 +144,9 @@ def _run_through(
 def _by_width(motion: KindOfMotion, mean: float, samples: int) -> Refinement:
     """Friction smoothed over widths that are halved."""
     told: dict[str, Any] = {"accuracy": ACCURACY, "enough": 100.0 * ACCURACY, "most": LAPS}
-    paces = [Resolution(width=width, **told) for width in WIDTHS.tolist()]
+    paces = [Resolution(width=width, **told) for width in HALVED_WIDTHS.tolist()]
     means = _run_through([motion.scene] * len(paces), motion, "smoothed", paces)
-    return Refinement("width", WIDTHS, np.abs(means - mean))
+    return Refinement("width", HALVED_WIDTHS, np.abs(means - mean))
 
 
 def _by_tolerance(method: Method) -> OrderSolver:

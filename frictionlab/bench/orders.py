@@ -130,12 +130,12 @@ REFERENCE_TOLERANCE = 1e-12
 """Tolerance of a reference."""
 LEAST_REFERENCE_ERROR = 1e-14
 """What no reference is known better than."""
-CAPTION = (
+ORDERS_CAPTION = (
     "Errors of the mean friction; each refinement halves the step or the smoothing width, or asks for a tenth of the "
     "tolerance. The steeper, the higher the order; the number is the fitted slope over the setting, in brackets and "
     "with hollow marks where the range is not asymptotic."
 )
-FOR_THE_FIGURE = ["title", "errors"]
+_FOR_THE_FIGURE = ["title", "errors"]
 
 
 def order_row(
@@ -180,9 +180,8 @@ class OrdersSection(Record):
                 rows.append(row | {"reference": reference})
         table = pd.DataFrame(rows)
         title, figure = "Observed orders on every kind of motion", partial(orders_figure, table)
-        return SectionResult(
-            self.name, title, table.drop(columns=FOR_THE_FIGURE), orders_summary(table), figure, CAPTION
-        )
+        shown, said = table.drop(columns=_FOR_THE_FIGURE), orders_summary(table)
+        return SectionResult(self.name, title, shown, said, figure, ORDERS_CAPTION)
 
 
 def reference_mean(motion: KindOfMotion) -> tuple[float, float, str]:

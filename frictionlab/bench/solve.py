@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pandas as pd
 
-from frictionlab.bench.contenders import Reference
+from frictionlab.bench.contenders import ReferenceSource
 from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
@@ -49,23 +49,23 @@ def solve_points(
 
 def _by_peer(peer: Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> pd.DataFrame:
     """All scenes at once where that is quicker; one that fails leaves the others their answers."""
-    status, means = "refused", np.full(len(scenes), np.nan)
-    reason = peer.refusal(scenes[0], law)
-    if reason is None and (peer.together or len(scenes) == 1):
+    nothing = pd.DataFrame({"mean": np.full(len(scenes), np.nan), "error": np.nan})
+    if (reason := peer.refusal(scenes[0], law)) is not None:
+        return nothing.assign(status="refused", reason=reason)
+    if peer.together or len(scenes) == 1:
         try:
-            means, status = peer.solve(scenes, law, tolerance), "failed"
-            reason = "the answer is no finite number"
+            found = nothing.assign(mean=peer.solve(scenes, law, tolerance))
+            good = np.isfinite(found["mean"])
+            told = np.where(good, "", "the answer is no finite number")
+            return found.assign(status=np.where(good, "ok", "failed"), reason=told)
         except Exception as problem:  # another's library may raise anything, and keeps its place all the same
-            status, reason = "failed", (str(problem) or type(problem).__name__) if len(scenes) == 1 else None
-    if reason is None:
-        return pd.concat([_by_peer(peer, [each], law, tolerance) for each in scenes], ignore_index=True)
-    good = np.isfinite(means)
-    told = {"status": np.where(good, "ok", status), "reason": np.where(good, "", reason)}
-    return pd.DataFrame(told | {"mean": means, "error": np.nan})
+            if len(scenes) == 1:
+                return nothing.assign(status="failed", reason=str(problem) or type(problem).__name__)
+    return pd.concat([_by_peer(peer, [each], law, tolerance) for each in scenes], ignore_index=True)
 
 
 def known_means(
-    reference: Reference, scenes: Sequence[Scene], law: FrictionLaw, more: Sequence[str] = ()
+    reference: ReferenceSource, scenes: Sequence[Scene], law: FrictionLaw, more: Sequence[str] = ()
 ) -> pd.DataFrame:
     """Mean and error of a reference at each point, NaN where it has no answer; more: as of ``solve_points``.
 

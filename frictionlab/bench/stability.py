@@ -20,12 +20,12 @@ from frictionlab.values.quantities import Record
 
 STEPS, TOLERANCES, RATES = (8.0, 4096.0), (1e-9, 1e-1), (1.0, 1e3)
 """Ends of the grid."""
-CAPTION = (
+STABILITY_CAPTION = (
     "Colour is the true error of the mean friction at each step (or tolerance) and local rate; hatched: wrong, and "
     "told so (refused, failed, or within the error stated), crosses: wrong without a word; red: where the step taken "
     "times the rate is at (adaptive: near) its limit, dashed as predicted, dots as measured. Integrated: {what}."
 )
-FOR_THE_FIGURE = ["title", "rate_text", "held", "held_limit"]
+_FOR_THE_FIGURE = ["title", "rate_text", "held", "held_limit"]
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,10 @@ class StabilitySection:
         if not maps:
             return nothing_measured(self.name, title, missing or "takes none of these problems")
         table, style = pd.concat(maps), {"hatch.linewidth": 0.5, "savefig.dpi": 200}
-        shown = table.drop(columns=FOR_THE_FIGURE).replace([math.inf, -math.inf], math.nan)
+        shown = table.drop(columns=_FOR_THE_FIGURE).replace([math.inf, -math.inf], math.nan)
         said = "\n".join(line(self.name, each) for each in maps)
-        figure, caption = partial(stability_figure, title, table), CAPTION.format(what=self.mapped.integrated)
+        caption = STABILITY_CAPTION.format(what=self.mapped.integrated)
+        figure = partial(stability_figure, title, table)
         return SectionResult(self.name, title, shown, said, figure, caption, style=style)
 
     def _map(self, problem: StabilityProblem) -> pd.DataFrame:

@@ -190,9 +190,8 @@ def _peer(name: str, problems: tuple[str, ...]) -> MappedSolver:
         return MapPoint(at, rate, step, "ok", abs(mean - known.mean), allowed, "")
 
     predicted = predicted_limit(name)
-    return MappedSolver(
-        name, problems, ONE_PERIOD, "tolerance", predicted, lambda memory: peer_limit(name), point
-    )
+    measured = partial(peer_limit, name)
+    return MappedSolver(name, problems, ONE_PERIOD, "tolerance", predicted, measured, point)
 
 
 _LIMITS_OF_SMOOTHING = predicted_limit("dop853"), partial(stepper_limit, "smoothed", 0.5)

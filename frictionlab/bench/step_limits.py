@@ -100,6 +100,6 @@ def _growth_of_dop853(z: float) -> float:
 
 
 @cache
-def peer_limit(name: str) -> float:
-    """The measured limit of a peer's steps; LSODA changes its formula as it goes, heyoka its order and its steps."""
+def peer_limit(name: str, memory: str = "") -> float:
+    """The measured limit of a peer's steps, whatever the law: LSODA changes its formula, heyoka its order."""
     return math.inf if name in ("LSODA", "heyoka") else measured_limit(partial(growth_by_scipy, name))

@@ -10,7 +10,7 @@ import pandas as pd
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 MICROSECONDS = "\N{GREEK SMALL LETTER MU}s"
-WITHOUT_NUMBER = ("refused", "failed", "not_unique")
+NO_NUMBER = ("refused", "failed", "not_unique")
 
 
 def size_text(error: Any) -> str:
@@ -39,7 +39,7 @@ def cell_text(text: float | str) -> str:
 
 def remark(row: Mapping[str, Any]) -> str:
     """Tell what has no number, how often and why."""
-    told = [f"{row[each]} {each.replace('_', ' ')}" for each in WITHOUT_NUMBER if int(row[each])]
+    told = [f"{row[each]} {each.replace('_', ' ')}" for each in NO_NUMBER if int(row[each])]
     return ": ".join(part for part in (", ".join(told), row["reason"]) if part)
 
 
@@ -91,7 +91,7 @@ def markdown_lines(table: pd.DataFrame) -> list[str]:
     return [f"| {' | '.join(line)} |" for line in lines]
 
 
-def reached(table: pd.DataFrame, target: float) -> pd.Series:
+def least_times(table: pd.DataFrame, target: float) -> pd.Series:
     """The least time per point [us] of each solver, at settings that answer every point to this largest error."""
     numbers = table[["ok", "points", "largest_error", "mean_us"]].apply(pd.to_numeric)
     good = (numbers["ok"] == numbers["points"]) & (numbers["largest_error"] <= target)
@@ -100,7 +100,7 @@ def reached(table: pd.DataFrame, target: float) -> pd.Series:
 
 def fastest(table: pd.DataFrame, side: str, target: float) -> str:
     """The least time per point to this largest error, and whose it is; a dash where nothing comes so near."""
-    near = reached(table[table["side"] == side], target)
+    near = least_times(table[table["side"] == side], target)
     return f"{micro_text(near.min())} by {near.idxmin()}" if len(near) else "-"
 
 
@@ -109,8 +109,8 @@ def curve_summary(name: str, table: pd.DataFrame) -> str:
     title = f"{name}: us per point to a largest error of (times the best method's)"
     if table.empty:
         return title
-    best = [reached(table[table["side"] == "method"], target).min() for target in TARGETS]
-    near = [reached(table, target) for target in TARGETS]
+    best = [least_times(table[table["side"] == "method"], target).min() for target in TARGETS]
+    near = [least_times(table, target) for target in TARGETS]
     wide = max(map(len, table["solver"])) + 7
     lines = [title, " " * wide + "".join(f"{target:>22.0e}" for target in TARGETS)]
     for label, own in table.groupby("solver", sort=False):

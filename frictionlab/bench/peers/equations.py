@@ -200,11 +200,9 @@ def one_period(equations: Equations, state: Floats, solver: str, tolerance: floa
         return by_solve_ivp(equations, state, solver, settings).y[:, -1]
     from scipy.integrate import odeint
 
-    settings |= {"mxstep": MOST_ODEINT_STEPS}
+    settings |= {"mxstep": MOST_ODEINT_STEPS, "tfirst": True, "full_output": True}
     with warnings.catch_warnings(action="ignore"):  # its message says the same
-        found, told = odeint(
-            equations, state, [0.0, equations.period], tfirst=True, full_output=True, **settings
-        )
+        found, told = odeint(equations, state, [0.0, equations.period], **settings)
     if told["message"] != "Integration successful.":
         raise ArithmeticError(f"odeint: {told['message']}")
     return found[-1]

@@ -94,13 +94,10 @@ class LineMotion(ABC):
 
 def means(line: LineMotion, scenes: Sequence[Scene], tolerance: float) -> Floats:
     """The mean friction of each scene, from the friction-free orbit until the period closes."""
-    found = []
+    found, state = [], np.array([*start(line.mass)[:2], 0.0])
+    enough = tolerance * line.mass.normal_load * line.period
     for scene in scenes:
         line.belt_speed = scene.belt_speed
-        state, enough = (
-            np.array([*start(line.mass)[:2], 0.0]),
-            tolerance * line.mass.normal_load * line.period,
-        )
         found.append(closed_mean(line.one_period, state, slice(0, 2), line.period, enough))
     return np.array(found)
 

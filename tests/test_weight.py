@@ -7,7 +7,7 @@ from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
     "analysis": 2119,
-    "bench": 2178,
+    "bench": 2173,
     "beside the rooms": 87,
     "charts": 1775,
     "cli": 981,

@@ -40,16 +40,12 @@ class Heyoka(Peer):
         friction = law.sliding_friction(1.0)
         if scenes[0].load_along_belt_only:
             return means(_line(mass, friction * mass.normal_load, tolerance), scenes, tolerance)
+        import heyoka as hy
+
         speeds = np.array([scene.belt_speed for scene in scenes])
-        lanes = self.lanes or _widest()
+        lanes = self.lanes or int(hy.recommended_simd_size())
         batches = (speeds[i : i + lanes] for i in range(0, len(speeds), lanes))
         return np.concatenate([_plane(mass, friction, each, tolerance, lanes) for each in batches])
-
-
-# Compiled integrators are kept: a user makes them once for a curve.
-@lru_cache(maxsize=16)
-def _line(mass: Mass, limit: float, tolerance: float) -> _Line:
-    return _Line(mass, limit, tolerance)
 
 
 class _Line(LineMotion):
@@ -79,6 +75,9 @@ class _Line(LineMotion):
         stick.propagate_until(self.period)
         end = stick.time
         return MotionState(end, place.x + self.belt_speed * (end - place.t), self.belt_speed)
+
+
+_line = lru_cache(maxsize=16)(_Line)  # compiled integrators are kept: a user makes them once for a curve
 
 
 def _slip(mass: Mass, limit: float, tolerance: float) -> Any:
@@ -163,10 +162,3 @@ def plane_system(mass: Mass, friction: float, belt_speed: Any, loads: tuple[Any,
     a1 = loads[0] - m.damping * v1 - x1 - m.normal_load * rub * slip
     a2 = loads[1] - m.transverse_damping * v2 - m.transverse_stiffness * x2 - m.normal_load * rub * v2
     return [(x1, v1), (v1, a1), (x2, v2), (v2, a2), (friction_impulse, rub * slip)]
-
-
-@lru_cache(maxsize=1)
-def _widest() -> int:
-    import heyoka as hy
-
-    return int(hy.recommended_simd_size())

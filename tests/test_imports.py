@@ -78,11 +78,11 @@ OUTSIDE = {
         "filelock": "compile runner",
         "pint": "values.units",
         "ruamel": "study runner",
-        "pandas": "values.units runner charts report analysis cli",
+        "pandas": "values.units runner charts report analysis bench cli",
         "xarray": "report",
         "pyarrow": "runner",
         "tqdm": "runner",  # inside a function: it is used by long runs alone
-        "matplotlib": "charts report.run bench.charts bench.account",  # of run the type of a figure
+        "matplotlib": "charts report.run bench.charts bench.page",  # of run the type of a figure
         # inside functions alone: nothing imports it before it is needed
         "distributed": "runner",
         "scipy": "theory motion methods.reduced curves runner analysis bench.peers",

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from frictionlab.bench.listed import Bench, UnknownCurve, bench_summary, measure
-from frictionlab.bench.reading import load_bench
-from frictionlab.bench.record import Section, SectionResult
+from frictionlab.bench.listed import Bench, UnknownCurve, bench_summary, load_bench, measure
+from frictionlab.bench.result import Section, SectionResult
 
 __all__ = [
     "Bench",

@@ -1,68 +1,90 @@
-"""One curve of a bench list: every method and peer on it, and what they come to.
-
-Speed against accuracy over models: what laws, simpler scenes and methods cost, and how far they are off.
-"""
+"""Curves of a bench: error and time per point of every method and peer, a row for each setting."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, ClassVar, NamedTuple
+from functools import partial
+from itertools import combinations
+from typing import Annotated, Any
 
-from frictionlab.bench import report
-from frictionlab.bench.measure import measured_row, reference_means, with_first_run
-from frictionlab.bench.record import ReferenceMeans, Row, SectionResult, Workload, file_stem
-from frictionlab.bench.report import curve_record
+import numpy as np
+import pandas as pd
+from pydantic import AfterValidator, model_validator
 
-CAPTION = (
+from frictionlab.bench.blocks import BenchBlock, refuse_other_sweeps
+from frictionlab.bench.charts import curve_figure
+from frictionlab.bench.contenders import BenchSetting, Contender, ReferenceSource
+from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.result import SectionResult, Tell
+from frictionlab.bench.solve import first_run, known_means, solve_points, time_task, whole_task
+from frictionlab.bench.texts import curve_summary
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method, ReducedModel
+from frictionlab.scene.scene import Scene
+from frictionlab.study.study import Study
+from frictionlab.values.quantities import Floats
+
+KnownReferences = Sequence[tuple[ReferenceSource, pd.DataFrame]]
+"""References with mean and error at each point."""
+BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
+ANSWERED = ("ok", "not_unique")
+"""Points that are worth timing."""
+CURVE_CAPTION = (
     "Lower is nearer the reference, further left is cheaper: read what each error costs along a level line."
 )
 
 
+def _of_a_file(name: str) -> str:
+    if not re.fullmatch(r"\w[\w.-]*", name):
+        raise ValueError("names a file: use letters, digits, points, - and _")
+    return name
+
+
+class CurveBlock(BenchBlock):
+    """An item of ``scenes``."""
+
+    name: Annotated[str, AfterValidator(_of_a_file)]
+
+    @model_validator(mode="after")
+    def _sweeps_belt_speeds(self) -> CurveBlock:
+        refuse_other_sweeps(self.study)
+        return self
+
+
 @dataclass(frozen=True)
-class CurveResult(SectionResult):
-    """A curve with its references and rows; left_out: peers that are not installed, with the remedy."""
+class Workload:
+    """Scenes that differ in belt speed alone, in ascending order, and the references of their errors.
 
-    kind: ClassVar[str] = "curve"
+    repeats, seconds: how long each setting may be timed: so many times, or so long if that is less.
+    """
 
-    name: str
-    title: str
-    work: Workload
-    references: list[ReferenceMeans]
-    rows: list[Row]
-    left_out: Mapping[str, str] | None = None
-    caption = CAPTION
+    scenes: tuple[Scene, ...]
+    law: FrictionLaw
+    references: tuple[ReferenceSource, ...]
+    repeats: int
+    seconds: float
 
     @property
-    def notes(self) -> list[str]:
-        """The belt speeds, and who is measured against what."""
-        speeds = self.work.speeds()
-        span = f"{len(speeds)} belt speeds from {speeds[0]:g} to {speeds[-1]:g}."
-        return [span, *report.reference_lines(self.references, self.rows)]
+    def speeds(self) -> list[float]:
+        """The belt speeds."""
+        return [scene.belt_speed for scene in self.scenes]
 
-    def records(self) -> Sequence[Mapping[str, Any]]:
-        """A row for each setting."""
-        kind = "coulomb" if self.work.law.constant_sliding_friction() else type(self.work.law).__name__
-        return [report.curve_record(row, self.name, kind.lower()) for row in self.rows]
+    def known(self) -> KnownReferences:
+        """Every reference with what it knows of each point."""
+        return [(each, known_means(each, self.scenes, self.law)) for each in self.references]
 
-    def markdown(self) -> str:
-        """The table, with what its errors are measured against."""
-        heading = f"## {self.name}{': ' + self.title if self.title else ''}"
-        notes = [*([report.left_out(self.left_out)] if self.left_out else []), *self.notes]
-        lines = [heading, "", *(f"- {note}" for note in notes), "", *report.markdown_lines(self.records())]
-        return "\n".join(lines) + "\n"
 
-    def write(self, folder: Path) -> list[Path]:
-        """The table as CSV and as Markdown. Raises OSError."""
-        text = folder / f"{file_stem(self.name)}.md"
-        text.write_text(self.markdown(), encoding="utf-8")
-        return [*super().write(folder), text]
-
-    def summary(self) -> str:
-        """The time per point to reach an error, for every contender, with the ratio to the best method."""
-        return report.curve_summary(self.name, self.rows)
+def workloads(
+    study: Study, references: tuple[ReferenceSource, ...], repeats: int, seconds: float
+) -> Iterator[tuple[str, Workload]]:
+    """The curve of each law, by its label."""
+    for along in study.curves():
+        scenes = sorted(along.scenes, key=lambda scene: scene.belt_speed)
+        yield along.law_label, Workload(tuple(scenes), along.law, references, repeats, seconds)
 
 
 @dataclass(frozen=True)
@@ -72,129 +94,134 @@ class BenchCurve:
     name: str
     title: str
     work: Workload
+    contenders: tuple[Contender, ...]
     first_runs: bool = False
 
-    def measure(self, tell: Callable[[str], None]) -> CurveResult:
-        """Every contender that is installed, at every setting."""
-        missing = self.work.missing()
-        there = [each for each in self.work.contenders if each.label not in missing]
-        steps = 1 + sum(len(each.solvers) for each in there)
-        tell(f"{self.name}: references (1 of {steps})")
-        found, rows = reference_means(self.work), list[Row]()
-        for contender in there:
-            for at, (setting, _) in enumerate(contender.solvers):
-                tell(f"{self.name}: {contender.label}, {setting} ({len(rows) + 2} of {steps})")
-                row = measured_row(self.work, found, contender, at)
-                rows.append(with_first_run(row, self.work) if self.first_runs else row)
-        return CurveResult(self.name, self.title, self.work, found, rows, missing)
+    def measure(self, tell: Tell) -> SectionResult:
+        """Measure every contender that is installed, at every setting."""
+        missing = {each.label: why for each in self.contenders if (why := each.missing())}
+        cases = [(each, at) for each in self.contenders if each.label not in missing for at in each.settings]
+        tell(f"{self.name}: references (1 of {len(cases) + 1})")
+        known, rows = self.work.known(), list[dict[str, Any]]()
+        for contender, setting in cases:
+            tell(f"{self.name}: {contender.label}, {setting} ({len(rows) + 2} of {len(cases) + 1})")
+            first = self.first_runs and setting is contender.settings[0]
+            rows.append(self._named() | measured_row(self.work, known, contender, setting, first))
+        table, speeds = pd.DataFrame(rows), self.work.speeds
+        notes = [f"{len(speeds)} belt speeds from {speeds[0]:g} to {speeds[-1]:g}."]
+        if rows:
+            table, notes = table.astype({"covered": "Int64"}), notes + _reference_lines(known, table)
+        title = f"{self.name}: {self.title}".removesuffix(": ")
+        figure, said = (
+            partial(curve_figure, title, table, largest_error(known)),
+            curve_summary(self.name, table),
+        )
+        drawn = SectionResult(self.name, self.title, table, said, figure, CURVE_CAPTION)
+        return replace(drawn, kind="curve", notes=notes, left_out=missing)
+
+    def _named(self) -> dict[str, str]:
+        law = self.work.law
+        kind = "coulomb" if law.constant_sliding_friction() else type(law).__name__.lower()
+        return {"scene": self.name, "law": kind}
 
 
-MODELS_CAPTION = (
-    "Every law, scene and method on one chart: how far the mean friction is from that of the richest model, against "
-    "the time of a point with its error. Points on the line are the front: nothing cheaper is nearer. Colours are "
-    "models, marks are methods; a dotted tail leads to what a reduced model costs without its error."
-)
-NOTICEABLY = 0.9
-"""Times an error: what is nearer by less is not worth its price."""
-OF_A_CURVE = (
-    *("quantity", "value", "points", "ok", "refused", "failed", "not_unique"),
-    *("largest_error", "median_error", "stated_error"),
-    *("mean_us", "mean_us_q1", "mean_us_q2", "mean_us_q3", "model_us", "error_us"),
-)
-"""Columns of a curve's table that a table of models has, too."""
+def largest_error(known: KnownReferences) -> float:
+    """The largest error of any reference, NaN without one."""
+    return float(pd.concat([found["error"] for _, found in known]).max())
 
 
-class BenchedModel(NamedTuple):
-    """A law on a scene, whole or without a part of it."""
-
-    law: str
-    scene: str
-    work: Workload
-
-    @property
-    def label(self) -> str:
-        """The law, and what the scene lacks."""
-        return f"{self.law}, {self.scene}" if self.scene else self.law
-
-
-class ModelRow(NamedTuple):
-    """A method at one setting on a model; its errors are those against the richest model."""
-
-    model: BenchedModel
-    row: Row
-
-    @property
-    def label(self) -> str:
-        """The method with its setting."""
-        setting = self.row.setting
-        return self.row.contender.label + (f", {setting}" if setting.quantity else "")
-
-    @property
-    def answered(self) -> bool:
-        """Whether it has an answer with an error at every belt speed that it was given."""
-        return self.row.counts["ok"] == self.row.points and math.isfinite(self.row.largest)
-
-    def record(self, best: bool) -> dict[str, Any]:
-        """A row of the CSV."""
-        told = curve_record(self.row, self.model.scene or "whole", self.model.law)
-        return {
-            **{"law": told["law"], "scene": told["scene"], "method": told["solver"]},
-            **{name: told[name] for name in OF_A_CURVE},
-            **{"front": "yes" if best else "no", "reference": told["reference"], "reason": told["reason"]},
-        }
+def _reference_lines(known: KnownReferences, table: pd.DataFrame) -> list[str]:
+    """Who is measured against what, how well that is known, and how far the references are apart."""
+    lines = []
+    for reference, found in known:
+        if users := table["solver"][table["reference"] == reference.label].unique().tolist():
+            told = f"{reference.label}, known to {found['error'].max():.1e}"
+            lines.append(f"Reference of {', '.join(users)}: {told}.")
+    for (other, before), (one, found) in combinations(known, 2):
+        apart = (found["mean"] - before["mean"]).abs().max()
+        lines.append(f"{other.label} and {one.label} differ by at most {apart:.1e}.")
+    return lines
 
 
-def front(rows: Sequence[ModelRow]) -> list[ModelRow]:
-    """Of those that answer all, the ones to which none cheaper is as near, by a tenth; from the cheapest on."""
-    found: list[ModelRow] = []
-    answered = (each for each in rows if each.answered)
-    for each in sorted(answered, key=lambda each: (each.row.mean.least, each.row.largest)):
-        if not found or each.row.largest < NOTICEABLY * found[-1].row.largest:
-            found.append(each)
-    return found
+def chosen(size: int, points: int | None) -> list[int]:
+    """So many places, spread evenly from the first to the last."""
+    if points is None or points >= size:
+        return list(range(size))
+    return sorted({round(place) for place in np.linspace(0, size - 1, points).tolist()})
 
 
-@dataclass(frozen=True)
-class ModelsResult(SectionResult):
-    """Every method on every model of one scene."""
+def measured_row(
+    work: Workload, known: KnownReferences, contender: Contender, setting: BenchSetting, first: bool = False
+) -> dict[str, Any]:
+    """A row of a table: errors against the first reference of another kind that knows a point, times [us] a point."""
+    solver, places = setting.solver, chosen(len(work.scenes), contender.points)
+    scenes = [work.scenes[place] for place in places]
+    found = solve_points(solver, scenes, work.law, setting.tolerance)
+    trusted = found.assign(mean=math.nan, error=math.nan)
+    label, known_to = "", math.nan
+    for reference, values in known:
+        if reference.kind != contender.kind and values["mean"][places].notna().any():
+            label, known_to = reference.label, values["error"].max()
+            trusted = values.loc[places].reset_index(drop=True)
+            break
+    answered = [scene for scene, told in zip(scenes, found["status"], strict=True) if told in ANSWERED]
+    row = {
+        **{"solver": contender.label, "side": contender.side},
+        **{"quantity": setting.quantity, "value": setting.value, "points": len(places)},
+        **{status: int((found["status"] == status).sum()) for status in BENCH_STATUSES},
+        **_errors(found, trusted, contender.side),
+        **_prices(work, answered, setting),
+        **{"first_run_s": math.nan, "reference": label, "reference_error": known_to},
+    }
+    if first and row["ok"] and isinstance(solver, Method):
+        row["first_run_s"] = first_run(solver, scenes, work.law, setting.tolerance)
+    return row | {"reason": _reason(found, row)}
 
-    name: str
-    title: str
-    rows: list[ModelRow]
-    references: list[ReferenceMeans]
-    caption = MODELS_CAPTION
 
-    def records(self) -> list[dict[str, Any]]:
-        """A row for each method on each model."""
-        best = front(self.rows)
-        return [each.record(each in best) for each in self.rows]
-
-    def summary(self) -> str:
-        """The front, from the cheapest model to the nearest one."""
-        lines = [f"{self.name}: errors against {self.rows[0].model.label} ({self.references[0].label})"]
-        for each in front(self.rows):
-            price = f"{1e6 * each.row.mean.least:,.3g} us a point"
-            lines.append(f"{each.row.largest:.1e}  {price:<20}{each.model.label}: {each.label}")
-        return "\n".join(lines)
+def _errors(found: pd.DataFrame, trusted: pd.DataFrame, side: str) -> dict[str, Any]:
+    """Errors of the points that are ok and known to the reference; covered: of how many what is stated covers it."""
+    off = (found["mean"] - trusted["mean"]).abs().where(found["status"] == "ok")
+    told = {"largest_error": off.max(), "median_error": off.median(), "stated_error": found["error"].max()}
+    covered = int((off <= found["error"] + trusted["error"]).sum())
+    return told | {"covered": covered if side == "method" and off.notna().any() else None}
 
 
-@dataclass(frozen=True)
-class ModelsSection:
-    """Models of one scene, the richest first."""
+def _reason(found: pd.DataFrame, row: dict[str, Any]) -> str:
+    """The most frequent reason of a point without a number, or why there is no error."""
+    reasons = Counter(found.loc[found["status"] != "ok", "reason"])
+    if reasons:
+        return str(reasons.most_common(1)[0][0])
+    if row["largest_error"] == row["largest_error"]:
+        return ""
+    return "the reference has no value" if row["reference"] else "no independent reference"
 
-    name: str
-    title: str
-    models: tuple[BenchedModel, ...]
 
-    def measure(self, tell: Callable[[str], None]) -> ModelsResult:
-        """Measure every method on every model."""
-        tell(f"{self.name}: references")
-        # of the method that is the reference, too: what a model leaves out is not its error
-        known = [replace(each, kind="") for each in reference_means(self.models[0].work)]
-        rows = []
-        for model in self.models:
-            for contender in model.work.contenders:
-                for at, (setting, _) in enumerate(contender.solvers):
-                    tell(f"{self.name}: {model.label}, {contender.label}, {setting}")
-                    rows.append(ModelRow(model, measured_row(model.work, known, contender, at)))
-        return ModelsResult(self.name, self.title, rows, known)
+def _prices(work: Workload, scenes: list[Scene], setting: BenchSetting) -> dict[str, Any]:
+    """Times per point [us]: of mean friction with its error, of every column, of a reduced model without its error.
+
+    Of a peer the first two are the same. Of a prescribed slip a reduced model leaves nothing out.
+    """
+    solver, law = setting.solver, work.law
+
+    def timed(task: Callable[[], object], warm: bool = False) -> Floats:
+        if not warm:
+            task()
+        return time_task(task, work.repeats, work.seconds)
+
+    mean = whole = model = np.array([])
+    if scenes:
+        mean = whole = timed(lambda: solver.solve(scenes, law, setting.tolerance), warm=True)
+        if not isinstance(solver, Peer):
+            whole = timed(whole_task(solver, scenes, law, setting.tolerance))
+        if isinstance(solver, ReducedModel) and scenes[0].degrees_of_freedom > 0:
+            model = timed(lambda: solver.model_means(scenes, law))
+    points = len(scenes)
+    told = times_of("mean", mean, points) | times_of("all", whole, points) | times_of("model", model, points)
+    return told | {"error_us": told["mean_us"] - told["model_us"]}
+
+
+def times_of(name: str, spent: Floats, points: int) -> dict[str, float]:
+    """Least time and quartiles per point [us], and how many times were taken."""
+    least, *quartiles = np.percentile(spent, (0, 25, 50, 75)) / points if spent.size else [math.nan] * 4
+    told = {f"{name}_us_q{i}": 1e6 * float(quartile) for i, quartile in enumerate(quartiles, 1)}
+    return {f"{name}_us": 1e6 * float(least), **told, f"{name}_repeats": spent.size}

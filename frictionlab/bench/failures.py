@@ -1,119 +1,92 @@
-"""The failure maps of one method or peer as a section of a bench list."""
+"""Failure maps of one method or peer as a section of a bench list."""
 
 from __future__ import annotations
 
-import math
-import statistics
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
-from typing import Any, ClassVar
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
-from frictionlab.bench.failure_maps import OUTCOMES, MapOutcome, MapTruth, PointOutcome, measure_map
-from frictionlab.bench.record import Contender, SectionResult, file_stem
+import pandas as pd
 
+from frictionlab.bench.charts import failures_figure
+from frictionlab.bench.contenders import Contender
+from frictionlab.bench.failure_maps import FailureMap
+from frictionlab.bench.result import SectionResult, Tell, file_stem, nothing_measured
+
+OUTCOMES = ("ok", "refused", "failed", "not_unique", "silent")
+"""What a point can come to."""
+OUTCOME_WORDS = {"not_unique": "not unique", "silent": "wrong, silent"}
 MAPS_CAPTION = (
     "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
     "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
 )
-
-CELLS = {each.name: each.name for each in fields(PointOutcome)} | {
-    "stated": "stated_error",
-    "true": "true_error",
-}
-"""The columns of a table of points, by the fields they hold."""
-
-
-@dataclass(frozen=True)
-class FailureResult(SectionResult):
-    """What one method or peer came to on every map it was given; nothing where it is left out."""
-
-    name: str
-    title: str
-    side: str
-    outcomes: tuple[MapOutcome, ...] = ()
-    truths: tuple[MapTruth, ...] = ()
-    left_out: Mapping[str, str] | None = None
-
-    style: ClassVar[Mapping[str, Any]] = {"hatch.linewidth": 0.5, "svg.fonttype": "none"}
-    """Many panels: letters stay text."""
-    caption = MAPS_CAPTION
-
-    def counts(self) -> Counter[str]:
-        """How many points of all maps came to what."""
-        return sum((outcome.counts() for outcome in self.outcomes), Counter[str]())
-
-    def records(self) -> list[dict[str, Any]]:
-        """Every point of every map."""
-        return [
-            {"map": outcome.drawn.name, "quantity": outcome.drawn.quantity, **_record(point)}
-            for outcome in self.outcomes
-            for point in outcome.points
-        ]
-
-    def summary(self) -> str:
-        """Counts by map, those that are wrong without a word last."""
-        if self.left_out:
-            return f"{self.name}: {self.left_out[self.name]}"
-        wide = max(len(outcome.drawn.name) for outcome in self.outcomes)
-        heads = [*map(word_of, OUTCOMES), "known to"]
-        lines = [f"{self.title}: points", " " * wide + "".join(f"{head:>14}" for head in heads)]
-        for outcome in self.outcomes:
-            counts = outcome.counts()
-            numbers = "".join(f"{counts[each]:>14,}" for each in OUTCOMES)
-            lines.append(f"{outcome.drawn.name:<{wide}}{numbers}{_known_to(outcome):>14}")
-        total = self.counts()
-        lines.append(f"{'all':<{wide}}" + "".join(f"{total[each]:>14,}" for each in OUTCOMES))
-        return "\n".join(lines)
-
-
-def _record(point: PointOutcome) -> dict[str, Any]:
-    values = zip(CELLS.values(), astuple(point), strict=True)
-    return {name: "" if value != value else value for name, value in values}
-
-
-def _known_to(outcome: MapOutcome) -> str:
-    """The median of the references' own errors, over the points that have one."""
-    errors = [point.reference_error for point in outcome.points if math.isfinite(point.reference_error)]
-    return f"{statistics.median(errors):.0e}" if errors else ""
-
-
-def word_of(outcome: str) -> str:
-    """An outcome as it is said."""
-    return {"not_unique": "not unique", "silent": "wrong, silent"}.get(outcome, outcome)
 
 
 @dataclass(frozen=True)
 class FailureSection:
     """The maps one method or peer is measured on, each with its own setting."""
 
-    name: str
     label: str
-    maps: tuple[tuple[MapTruth, Contender], ...]
+    maps: tuple[tuple[FailureMap, Contender], ...]
 
-    def measure(self, tell: Callable[[str], None]) -> FailureResult:
+    @property
+    def name(self) -> str:
+        """That of its files."""
+        return f"failures_{file_stem(self.label)}"
+
+    def measure(self, tell: Tell) -> SectionResult:
         """Solve every point of every map. What the references say is found once for all sections."""
-        first = self.maps[0][1]
+        first, style = self.maps[0][1], {"hatch.linewidth": 0.5, "svg.fonttype": "none"}  # letters stay text
         title = f"Failure maps of {self.label}{' (peer)' if first.side == 'peer' else ''}"
         if missing := first.missing():
-            return FailureResult(self.name, title, first.side, left_out={self.name: missing})
-        for truth, _ in self.maps:
-            tell(f"{self.name}: {truth.drawn.name}, references")
-            truth.known  # noqa: B018  # found here, where it is told, and not within a time
-        found = []
-        for truth, contender in self.maps:
-            tell(f"{self.name}: {truth.drawn.name}")
-            found.append(measure_map(truth, contender))
-        truths = tuple(truth for truth, _ in self.maps)
-        return FailureResult(self.name, title, first.side, tuple(found), truths)
+            return nothing_measured(self.name, title, missing)
+        for drawn, _ in self.maps:
+            tell(f"{self.name}: {drawn.name}, references")
+            _ = drawn.known  # found here, where it is told
+        tables = []
+        for drawn, contender in self.maps:
+            tell(f"{self.name}: {drawn.name}")
+            tables.append(drawn.measured(contender))
+        table, figure = pd.concat(tables).drop(columns="ordinate"), partial(self._figure, title, tables)
+        said = failures_summary(title, table)
+        return SectionResult(self.name, title, table, said, figure, MAPS_CAPTION, style=style)
+
+    def _figure(self, title: str, tables: Sequence[pd.DataFrame]) -> Any:
+        """The maps that are not refused everywhere, the others in words."""
+        maps, refused = [], list[str]()
+        for (drawn, _), table in zip(self.maps, tables, strict=True):
+            if (table["outcome"] == "refused").all():
+                told = f"{drawn.name}: refused at every point: {table['reason'].iloc[0]}"
+                refused += textwrap.wrap(told, 110)
+            else:
+                maps.append(drawn.picture(table))
+        outcome = pd.concat(tables)["outcome"]
+        silent = int((outcome == "silent").sum())
+        head = f"{title}: {len(outcome):,} points, {silent:,} wrong without a word"
+        kinds = ["true"] if self.maps[0][1].side == "peer" else ["stated", "true"]
+        return failures_figure(head, maps, kinds, "\n".join(refused))
 
 
-def failure_sections(maps: Sequence[tuple[MapTruth, Sequence[Contender]]]) -> list[FailureSection]:
+def failures_summary(title: str, table: pd.DataFrame) -> str:
+    """Counts by map, those that are wrong without a word last, and the median of the references' own errors."""
+    counts = pd.crosstab(table["map"], table["outcome"]).reindex(table["map"].unique())
+    counts = counts.reindex(columns=list(OUTCOMES), fill_value=0)
+    known, wide = table.groupby("map")["reference_error"].median(), max(map(len, counts.index))
+    heads = [*(OUTCOME_WORDS.get(each, each) for each in OUTCOMES), "known to"]
+    lines = [f"{title}: points", " " * wide + "".join(f"{head:>14}" for head in heads)]
+    for name, row in counts.iterrows():
+        told = f"{known[name]:.0e}" if known[name] == known[name] else ""
+        lines.append(f"{name:<{wide}}" + "".join(f"{count:>14,}" for count in row) + f"{told:>14}")
+    lines.append(f"{'all':<{wide}}" + "".join(f"{count:>14,}" for count in counts.sum()))
+    return "\n".join(lines)
+
+
+def failure_sections(maps: Sequence[FailureMap]) -> list[FailureSection]:
     """A section for each contender of these maps, in the order of their first map."""
-    found: dict[str, list[tuple[MapTruth, Contender]]] = {}
-    for truth, contenders in maps:
-        for contender in contenders:
-            found.setdefault(contender.label, []).append((truth, contender))
-    return [
-        FailureSection(f"failures_{file_stem(label)}", label, tuple(each)) for label, each in found.items()
-    ]
+    found: dict[str, list[tuple[FailureMap, Contender]]] = {}
+    for drawn in maps:
+        for contender in drawn.contenders:
+            found.setdefault(contender.label, []).append((drawn, contender))
+    return [FailureSection(label, tuple(each)) for label, each in found.items()]

@@ -6,43 +6,34 @@ What is refined: the steps, widths or tolerances of every solver, and its errors
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.measure import solve_points
+from frictionlab.bench.solve import solve_points
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.base import Method
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.march.run import MarchResult, MarchRun
+from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.values.quantities import Floats
 
-_RESONANCE = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=20.0, drive=Drive(amplitude=10.0, frequency=1.0)
-)
+_RESONANCE = Scene(damping_ratio=0.1, normal_load=10, belt_speed=20, drive=Drive(amplitude=10, frequency=1))
 """Strong friction at resonance: without friction the velocity has the amplitude 50."""
-_MOSTLY_HELD = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=1.0, drive=Drive(amplitude=2.5, frequency=0.5)
-)
+_HELD = Scene(damping_ratio=0.1, normal_load=10, belt_speed=1, drive=Drive(amplitude=2.5, frequency=0.5))
 """The load is below friction: the mass sticks most of the time."""
-_IN_PHASE = Scene(
-    damping_ratio=0.1,
-    normal_load=1.0,
-    belt_speed=5.0,
-    drive=Drive(unbalance=10.0, frequency=4.0),
-    transverse=Transverse(natural_frequency=1.0, damping_ratio=0.1, load=Load(unbalance=10.0)),
-)
+_DRIVE = Drive(unbalance=10, frequency=4)
+_ACROSS = Transverse(natural_frequency=1, damping_ratio=0.1, load=Load(unbalance=10))
+_IN_PHASE = Scene(damping_ratio=0.1, normal_load=1, belt_speed=5, drive=_DRIVE, transverse=_ACROSS)
 """Both velocities swing in phase, with 43: slip turns round twice a period at 0.7 of the belt's speed."""
-_OFF_RESONANCE = Scene(
-    damping_ratio=0.1, normal_load=10.0, belt_speed=45.0, drive=Drive(amplitude=30.0, frequency=1.5)
-)
+_QUICK = Scene(damping_ratio=0.1, normal_load=10, belt_speed=45, drive=Drive(amplitude=30, frequency=1.5))
 """Off resonance; without friction the velocity has the amplitude 35."""
 _COULOMB = Coulomb(mu=0.4)
 _FALLING = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=40.0)
@@ -66,13 +57,11 @@ class KindOfMotion:
 
 
 _ALL = (
-    KindOfMotion("smooth", "slip without reversal", _OFF_RESONANCE, _FALLING, "Stribeck, falling", False),
+    KindOfMotion("smooth", "slip without reversal", _QUICK, _FALLING, "Stribeck, falling", False),
     KindOfMotion("crossing", "slip reverses", _RESONANCE, _COULOMB, "Coulomb", True),
     KindOfMotion("grazing", "slip just reaches rest", _RESONANCE.at(50.0), _COULOMB, "Coulomb", True),
-    KindOfMotion("stick", "mostly stick", _MOSTLY_HELD, _COULOMB, "Coulomb", True),
-    KindOfMotion(
-        "bristle_dragged", "bristles, no reversal", _OFF_RESONANCE, _DRAGGED, "LuGre, falling", False
-    ),
+    KindOfMotion("stick", "mostly stick", _HELD, _COULOMB, "Coulomb", True),
+    KindOfMotion("bristle_dragged", "bristles, no reversal", _QUICK, _DRAGGED, "LuGre, falling", False),
     KindOfMotion("bristle_soft", "soft bristles, 5 long", _RESONANCE, _SOFT, "LuGre", True),
     KindOfMotion("bristle_stiff", "stiff bristles, 0.5 long", _RESONANCE, _STIFF, "LuGre", True),
     KindOfMotion("plane_near_rest", "plane, slip passes near rest", _IN_PHASE, _COULOMB, "Coulomb", False),
@@ -91,105 +80,84 @@ CLOSED_ORBIT = 1e-13
 """Distance from the closed orbit, in the norm of energy."""
 LAPS = 3000
 GOLDEN_PHASE = 0.5 * (math.sqrt(5.0) - 1.0)
-WIDEST, WIDTHS, ACCURACY = 2.0, 12, 1e-12
-LOOSEST, TOLERANCES = 1e-2, 9
+HALVED_WIDTHS = np.array([2.0 * 0.5**k for k in range(12)])
+ACCURACY = 1e-12
+"""Of steps on smoothed friction, so short that the width alone matters."""
+TOLERANCES = np.array([1e-2 * 0.1**k for k in range(9)])
 
 
 class Refinement(NamedTuple):
-    """Errors of the mean friction at settings of one kind, coarse to fine; sizes: step, width or tolerance."""
+    """Errors of the mean friction at settings of one kind, coarse to fine: steps, width or tolerance."""
 
     setting: str
-    values: list[float]
-    sizes: Floats
+    values: Floats
     errors: Floats
 
 
 @dataclass(frozen=True)
-class FixedSteps:
-    """A stepper of march with steps of one length."""
+class OrderSolver:
+    """A solver whose order is measured; takes: whether it follows a motion, refined: its errors about a mean."""
 
     name: str
-    stepper: StepperName
-    memory: tuple[str, ...]
-    theta: float = 0.5
+    takes: Callable[[KindOfMotion], bool]
+    refined: Callable[[KindOfMotion, float, int], Refinement]
 
-    def refusal(self, motion: KindOfMotion) -> str | None:
-        """Laws of another kind."""
-        return None if motion.law.memory_kind in self.memory else "another kind of law"
 
-    def refined(self, motion: KindOfMotion, mean: float, samples: int) -> Refinement:
-        """Root mean squares over grids: where slip reverses within a step decides how large the error is.
+def _fixed_steps(name: str, stepper: StepperName, memory: Sequence[str], theta: float = 0.5) -> OrderSolver:
+    """A stepper of march with steps of one length.
 
-        Each grid has its own phase and its own number of steps, the latter since two reversals in a period have
-        always the same distance.
-        """
-        first = max(COARSEST_STEPS, MarchRun(motion.scene, motion.law, self.stepper).fewest())
+    Errors are root mean squares over grids: where slip reverses within a step decides how large the error is. Each
+    grid has its own phase and its own number of steps, the latter since two reversals in a period have always the
+    same distance.
+    """
+
+    def refined(motion: KindOfMotion, mean: float, samples: int) -> Refinement:
+        first = max(COARSEST_STEPS, MarchRun(motion.scene, motion.law, stepper).fewest())
         halvings = max(FEWEST, min(HALVINGS, 1 + int(math.log2(FINEST_STEPS / first))))
-        grids = samples if motion.irregular else 1
-        errors = [self._errors(motion, first, grid, grids, halvings, mean) for grid in range(grids)]
-        counts = [float(first * 2**k) for k in range(halvings)]
+        grids, doublings = samples if motion.irregular else 1, 2 ** np.arange(halvings)
+        errors = np.empty((grids, halvings))
+        for grid in range(grids):
+            steps = ((first + grid * first // (2 * grids)) * doublings).tolist()
+            told: dict[str, Any] = {"theta": theta, "enough": CLOSED_ORBIT, "most": LAPS}
+            paces = [Resolution(steps=n, refined=n // steps[0], **told) for n in steps]
+            shifts = [360.0 / n * ((grid * GOLDEN_PHASE) % 1.0) for n in steps]
+            scenes = [with_phase(motion.scene, shift) for shift in shifts]
+            errors[grid] = _run_through(scenes, motion, stepper, paces) - mean
         return Refinement(
-            "steps", counts, 1.0 / np.array(counts), np.sqrt(np.mean(np.square(errors), axis=0))
+            "steps", (first * doublings).astype(np.float64), np.sqrt(np.mean(errors**2, axis=0))
         )
 
-    def _errors(
-        self, motion: KindOfMotion, first: int, grid: int, grids: int, halvings: int, mean: float
-    ) -> list[float]:
-        steps = first + grid * first // (2 * grids)
-        errors: list[float] = []
-        run: MarchResult | None = None
-        for k in range(halvings):
-            shift = 360.0 / (steps * 2**k) * ((grid * GOLDEN_PHASE) % 1.0)
-            march = MarchRun(with_phase(motion.scene, shift), motion.law, self.stepper)
-            pace = Resolution(
-                steps=steps * 2**k, refined=2**k, theta=self.theta, enough=CLOSED_ORBIT, most=LAPS
-            )
-            run = march.run(pace, None if run is None else run.place)
-            errors.append(run.mean.real - mean if run.settled else math.nan)
-        return errors
+    return OrderSolver(name, lambda motion: motion.law.memory_kind in memory, refined)
 
 
-@dataclass(frozen=True)
-class Widths:
-    """Smoothed friction, its steps so short that the width alone matters."""
-
-    name: str = "smoothed"
-
-    def refusal(self, motion: KindOfMotion) -> str | None:
-        """Laws with memory."""
-        return None if motion.law.memory_kind == "none" else "another kind of law"
-
-    def refined(self, motion: KindOfMotion, mean: float, samples: int) -> Refinement:
-        """By halves."""
-        march, errors = MarchRun(motion.scene, motion.law, "smoothed"), list[float]()
-        widths = [WIDEST * 0.5**k for k in range(WIDTHS)]
-        run: MarchResult | None = None
-        for width in widths:
-            pace = Resolution(width=width, accuracy=ACCURACY, enough=100.0 * ACCURACY, most=LAPS)
-            run = march.run(pace, None if run is None else run.place)
-            errors.append(abs(run.mean.real - mean) if run.settled else math.nan)
-        return Refinement("width", widths, np.array(widths), np.array(errors))
+def _run_through(
+    scenes: Sequence[Scene], motion: KindOfMotion, stepper: StepperName, paces: Sequence[Resolution]
+) -> Floats:
+    """Mean friction at each pace, begun from the orbit at the pace before; NaN where it does not settle."""
+    means, run = list[float](), None
+    for scene, pace in zip(scenes, paces, strict=True):
+        run = MarchRun(scene, motion.law, stepper).run(pace, None if run is None else run.place)
+        means.append(run.mean.real if run.settled else math.nan)
+    return np.array(means)
 
 
-@dataclass(frozen=True)
-class Tolerances:
-    """A method that is asked for a tolerance."""
+def _by_width(motion: KindOfMotion, mean: float, samples: int) -> Refinement:
+    """Friction smoothed over widths that are halved."""
+    told: dict[str, Any] = {"accuracy": ACCURACY, "enough": 100.0 * ACCURACY, "most": LAPS}
+    paces = [Resolution(width=width, **told) for width in HALVED_WIDTHS.tolist()]
+    means = _run_through([motion.scene] * len(paces), motion, "smoothed", paces)
+    return Refinement("width", HALVED_WIDTHS, np.abs(means - mean))
 
-    name: str
-    method: Method
 
-    def refusal(self, motion: KindOfMotion) -> str | None:
-        """The method's own."""
-        return self.method.refusal(motion.scene, motion.law)
+def _by_tolerance(method: Method) -> OrderSolver:
+    """A method that is asked for a tenth of a tolerance, and again."""
 
-    def refined(self, motion: KindOfMotion, mean: float, samples: int) -> Refinement:
-        """By tenths."""
-        asked = [LOOSEST * 0.1**k for k in range(TOLERANCES)]
-        errors = [
-            abs(float(solve_points(self.method, [motion.scene], motion.law, tolerance).means[0]) - mean)
-            for tolerance in asked
-        ]
-        return Refinement("tolerance", asked, np.array(asked), np.array(errors))
+    def refined(motion: KindOfMotion, mean: float, samples: int) -> Refinement:
+        found = [solve_points(method, [motion.scene], motion.law, asked) for asked in TOLERANCES.tolist()]
+        errors = np.abs(np.array([each["mean"].iloc[0] for each in found]) - mean)
+        return Refinement("tolerance", TOLERANCES, errors)
+
+    return OrderSolver(method.name, lambda motion: method.refusal(motion.scene, motion.law) is None, refined)
 
 
 def with_phase(scene: Scene, degrees: float) -> Scene:
@@ -203,16 +171,14 @@ def with_phase(scene: Scene, degrees: float) -> Scene:
     return scene.model_copy(update=later)
 
 
-OrderSolver = FixedSteps | Widths | Tolerances
-"""A solver whose order is measured."""
-_ALL_SOLVERS: tuple[OrderSolver, ...] = (
-    FixedSteps("rk4", "rk4", ("none", "bristle")),
-    FixedSteps("moreau_0.5", "moreau", ("none",), 0.5),
-    FixedSteps("moreau_1", "moreau", ("none",), 1.0),
-    FixedSteps("sdirk2", "sdirk2", ("bristle",)),
-    Widths(),
-    Tolerances("shooting", Shooting()),
-    Tolerances("exact", Exact()),
+_ALL_SOLVERS = (
+    _fixed_steps("rk4", "rk4", ("none", "bristle")),
+    _fixed_steps("moreau_0.5", "moreau", ("none",), 0.5),
+    _fixed_steps("moreau_1", "moreau", ("none",), 1.0),
+    _fixed_steps("sdirk2", "sdirk2", ("bristle",)),
+    OrderSolver("smoothed", lambda motion: motion.law.memory_kind == "none", _by_width),
+    _by_tolerance(Shooting()),
+    _by_tolerance(Exact()),
 )
-ORDER_SOLVERS: dict[str, OrderSolver] = {solver.name: solver for solver in _ALL_SOLVERS}
+ORDER_SOLVERS = {solver.name: solver for solver in _ALL_SOLVERS}
 """By name, in the order of tables and pictures."""

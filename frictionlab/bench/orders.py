@@ -1,22 +1,19 @@
-"""The order of a sequence of errors: the slope of log error over log setting where it no longer changes.
-
-The order that theory gives each solver on each kind of motion, and why.
-
-The section of a bench list that measures orders, and what it comes to.
-"""
+"""Observed orders of solvers on every kind of motion: fitted slopes beside what theory expects, and why."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, NamedTuple
+from functools import partial
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+import pandas as pd
 
-from frictionlab.bench.measure import solve_points
-from frictionlab.bench.order_solvers import MOTIONS, ORDER_SOLVERS, KindOfMotion, Refinement
-from frictionlab.bench.record import FILLED, AtLeastOne, SectionResult, one_of
+from frictionlab.bench.charts import orders_figure
+from frictionlab.bench.contenders import AtLeastOne, names_of
+from frictionlab.bench.order_solvers import MOTIONS, ORDER_SOLVERS, KindOfMotion, OrderSolver
+from frictionlab.bench.result import SectionResult, Tell
+from frictionlab.bench.solve import solve_points
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.values.quantities import Floats, Record
@@ -46,7 +43,7 @@ class Fit(NamedTuple):
     asymptotic: bool
 
 
-NO_FIT = Fit(math.nan, math.nan, 0, 0, False)
+NO_FIT = Fit(math.nan, math.nan, 0, -1, False)
 
 
 def fit_order(sizes: Floats, errors: Floats, known: float) -> Fit:
@@ -55,19 +52,21 @@ def fit_order(sizes: Floats, errors: Floats, known: float) -> Fit:
     if last - first < 1:
         return NO_FIT
     x, y = np.log(sizes), np.log(np.where(errors > 0.0, errors, 1.0))
+
+    def slope(at: int, end: int) -> float:
+        return float(np.polyfit(x[at : end + 1], y[at : end + 1], 1)[0])
+
+    def fitted(begin: int, points: int, asymptotic: bool) -> Fit:
+        order = slope(begin, last)
+        slopes = [slope(at, at + points - 1) for at in range(begin, last - points + 2)]
+        return Fit(order, max(abs(each - order) for each in slopes), begin, last, asymptotic)
+
     for points, fewest in ((SETTINGS_OF_A_SLOPE, FEWEST_SLOPES), (2, FEWEST_SLOPES + 1)):
         finest = range(max(first, last - MOST_SETTINGS + 1), last - points + 2)
-        steady = _steady_at_the_end([_slope(x, y, at, at + points - 1) for at in finest])
-        if len(steady) >= fewest:
-            begin = last - points + 2 - len(steady)
-            order = _slope(x, y, begin, last)
-            return Fit(order, max(abs(slope - order) for slope in steady), begin, last, True)
-    order, points = (
-        _slope(x, y, first, last),
-        SETTINGS_OF_A_SLOPE if last - first > SETTINGS_OF_A_SLOPE else 2,
-    )
-    slopes = [_slope(x, y, at, at + points - 1) for at in range(first, last - points + 2)]
-    return Fit(order, max(abs(slope - order) for slope in slopes), first, last, False)
+        steady = _steady_at_the_end([slope(at, at + points - 1) for at in finest])
+        if steady >= fewest:
+            return fitted(last - points + 2 - steady, points, True)
+    return fitted(first, SETTINGS_OF_A_SLOPE if last - first > SETTINGS_OF_A_SLOPE else 2, False)
 
 
 def _longest_run(good: np.ndarray) -> tuple[int, int]:
@@ -79,97 +78,52 @@ def _longest_run(good: np.ndarray) -> tuple[int, int]:
     return best
 
 
-def _slope(x: Floats, y: Floats, first: int, last: int) -> float:
-    """By least squares."""
-    return float(np.polyfit(x[first : last + 1], y[first : last + 1], 1)[0])
-
-
-def _steady_at_the_end(slopes: list[float]) -> list[float]:
-    """The last slopes that differ by little enough."""
-    kept = list[float]()
-    for slope in reversed(slopes):
-        if max([*kept, slope]) - min([*kept, slope]) > STEADY_SLOPES:
-            break
-        kept.append(slope)
-    return kept
-
-
-class TheoryOfOrder(NamedTuple):
-    """An order, NaN where errors fall otherwise than by a power, and the reason; plain: without a logarithm."""
-
-    order: float
-    reason: str
-    plain: bool = True
+def _steady_at_the_end(slopes: list[float]) -> int:
+    """How many of the last slopes differ by little enough."""
+    last = slopes[::-1]
+    steady = (n for n in range(len(last), 0, -1) if np.ptp(last[:n]) <= STEADY_SLOPES)
+    return next(steady, 0)
 
 
 _OWN = "of the formula itself: all is smooth"
-_REVERSAL = "a reversal inside a step: the grid knows its sign, not its share"
+_ONCE_SHORT = "of the formula itself, once a step is shorter than the turn; rounding comes first"
 _CORNER = "rates have a corner where slip reverses: second order is kept, no higher one"
-_BLIND = "blind to stick: chatter of one step's impulse"
-_ENDS = "projection: friction is continuous where stick begins and ends"
-_LOGARITHM = "the dip grows with what it changes: h log 1/h, which looks like less or more than 1 for long"
-_FASTER = "slip stays many widths from rest: faster than any power"
 _WIDTH = "friction is off while slip is within a width of rest: a time in proportion to it"
+_LOGARITHM = "the dip grows with what it changes: h log 1/h, which looks like less or more than 1 for long"
 _TOLERANCE = "the error follows the tolerance; steps adapt, so not smoothly"
-_CLOSED_FORM = "closed form between events: rounding at any tolerance"
-
-_OF_TWO_STAGES = {
-    "bristle_dragged": TheoryOfOrder(2.0, _OWN),
-    "bristle_soft": TheoryOfOrder(2.0, _CORNER),
-    "bristle_stiff": TheoryOfOrder(2.0, _CORNER),
-}
-_THEORY: dict[str, dict[str, TheoryOfOrder]] = {
-    "rk4": {
-        "smooth": TheoryOfOrder(4.0, _OWN),
-        "crossing": TheoryOfOrder(1.0, _REVERSAL),
-        "grazing": TheoryOfOrder(1.0, _LOGARITHM, plain=False),
-        "stick": TheoryOfOrder(1.0, _BLIND),
-        "bristle_dragged": TheoryOfOrder(4.0, _OWN),
-        "bristle_soft": TheoryOfOrder(2.0, _CORNER),
-        "bristle_stiff": TheoryOfOrder(2.0, _CORNER),
-        "plane_near_rest": TheoryOfOrder(
-            4.0, "of the formula itself, once a step is shorter than the turn; rounding comes first"
-        ),
-    },
-    "moreau_0.5": {
-        "smooth": TheoryOfOrder(2.0, _OWN),
-        "crossing": TheoryOfOrder(1.0, _REVERSAL),
-        "grazing": TheoryOfOrder(
-            2.0, "what the amplitude's error, of order 2, exceeds the belt by is projected"
-        ),
-        "stick": TheoryOfOrder(2.0, _ENDS),
-        "plane_near_rest": TheoryOfOrder(2.0, _OWN),
-    },
-    "moreau_1": {
-        "smooth": TheoryOfOrder(1.0, _OWN),
-        "crossing": TheoryOfOrder(1.0, _REVERSAL),
-        "grazing": TheoryOfOrder(
-            math.nan, "its damping of order 1 keeps slip from rest: friction is constant"
-        ),
-        "stick": TheoryOfOrder(1.0, _OWN),
-        "plane_near_rest": TheoryOfOrder(1.0, _OWN),
-    },
-    "exponential": _OF_TWO_STAGES,
-    "sdirk2": _OF_TWO_STAGES,
-    "smoothed": {
-        "smooth": TheoryOfOrder(math.nan, _FASTER),
-        "crossing": TheoryOfOrder(1.0, _WIDTH),
-        "grazing": TheoryOfOrder(1.0, _LOGARITHM, plain=False),
-        "stick": TheoryOfOrder(1.0, _WIDTH),
-        "plane_near_rest": TheoryOfOrder(math.nan, _FASTER),
-    },
-}
+NOT_PLAIN = (_LOGARITHM, _TOLERANCE)
+"""Reasons of errors that fall by no plain power."""
+# fmt: off
+_THEORY = (
+    ("rk4", "smooth bristle_dragged", 4.0, _OWN),
+    ("rk4", "plane_near_rest", 4.0, _ONCE_SHORT),
+    ("rk4", "stick", 1.0, "blind to stick: chatter of one step's impulse"),
+    ("rk4 smoothed", "grazing", 1.0, _LOGARITHM),
+    ("rk4 sdirk2", "bristle_soft bristle_stiff", 2.0, _CORNER),
+    ("sdirk2", "bristle_dragged", 2.0, _OWN),
+    ("rk4 moreau_0.5 moreau_1", "crossing", 1.0, "a reversal inside a step: the grid knows its sign, not its share"),
+    ("moreau_0.5", "smooth plane_near_rest", 2.0, _OWN),
+    ("moreau_0.5", "grazing", 2.0, "what the amplitude's error, of order 2, exceeds the belt by is projected"),
+    ("moreau_0.5", "stick", 2.0, "projection: friction is continuous where stick begins and ends"),
+    ("moreau_1", "smooth stick plane_near_rest", 1.0, _OWN),
+    ("moreau_1", "grazing", math.nan, "its damping of order 1 keeps slip from rest: friction is constant"),
+    ("smoothed", "smooth plane_near_rest", math.nan, "slip stays many widths from rest: faster than any power"),
+    ("smoothed", "crossing stick", 1.0, _WIDTH),
+    ("shooting", " ".join(MOTIONS), 1.0, _TOLERANCE),
+    ("exact", " ".join(MOTIONS), math.nan, "closed form between events: rounding at any tolerance"),
+)
+# fmt: on
+"""Solvers, motions, the order that theory gives them, NaN where errors fall otherwise than by a power, and why."""
 
 
-def theory_of(solver: str, motion: str) -> TheoryOfOrder:
-    """What theory says of a solver on a motion."""
-    if solver in _THEORY:
-        return _THEORY[solver][motion]
-    return (
-        TheoryOfOrder(math.nan, _CLOSED_FORM)
-        if solver == "exact"
-        else TheoryOfOrder(1.0, _TOLERANCE, plain=False)
+def theory_of(solver: str, motion: str) -> tuple[float, str]:
+    """Order that theory gives a solver on a motion, and why."""
+    ((order, reason),) = (
+        (order, reason)
+        for solvers, motions, order, reason in _THEORY
+        if solver in solvers.split() and motion in motions.split()
     )
+    return order, reason
 
 
 REFERENCE_TOLERANCE = 1e-12
@@ -181,77 +135,27 @@ ORDERS_CAPTION = (
     "tolerance. The steeper, the higher the order; the number is the fitted slope over the setting, in brackets and "
     "with hollow marks where the range is not asymptotic."
 )
+_FOR_THE_FIGURE = ["title", "errors"]
 
 
-@dataclass(frozen=True)
-class OrderRow:
-    """One solver on one motion; reference: the method whose mean errors are measured against."""
-
-    solver: str
-    motion: KindOfMotion
-    refinement: Refinement
-    fit: Fit
-    theory: TheoryOfOrder
-    reference: str
-
-    @property
-    def asymptotic(self) -> bool:
-        """Whether the slope is steady and theory gives a plain power."""
-        return self.fit.asymptotic and self.theory.plain
-
-    @property
-    def agrees(self) -> bool:
-        """Whether an asymptotic order is within 0.1 of theory."""
-        return abs(self.fit.order - self.theory.order) <= 0.1
-
-    def record(self) -> dict[str, Any]:
-        """A row of the CSV; empty where nothing was fitted."""
-        fit, refinement = self.fit, self.refinement
-        fitted = not math.isnan(fit.order)
-        return {
-            "solver": self.solver,
-            "motion": self.motion.name,
-            "law": self.motion.law_text,
-            "setting": refinement.setting,
-            "settings_from": refinement.values[fit.first] if fitted else "",
-            "settings_to": refinement.values[fit.last] if fitted else "",
-            "order": fit.order if fitted else "",
-            "spread": fit.spread if fitted else "",
-            "theory": "" if math.isnan(self.theory.order) else self.theory.order,
-            "reason": self.theory.reason,
-            "asymptotic": "yes" if self.asymptotic else "no",
-            "error_from": float(refinement.errors[fit.first if fitted else 0]),
-            "error_to": float(refinement.errors[fit.last if fitted else -1]),
-            "reference": self.reference,
-        }
-
-
-@dataclass(frozen=True)
-class OrdersResult(SectionResult):
-    """Every order that was measured."""
-
-    rows: list[OrderRow]
-    name: str = "orders"
-    title: str = "Observed orders on every kind of motion"
-    caption = ORDERS_CAPTION
-
-    def records(self) -> list[dict[str, Any]]:
-        """A row an order."""
-        return [row.record() for row in self.rows]
-
-    def summary(self) -> str:
-        """A line a motion and solver, asymptotic orders first compared with theory."""
-        known = [row for row in self.rows if row.asymptotic]
-        lines = [
-            f"{self.name}: {len(known)} of {len(self.rows)} asymptotic, "
-            f"{sum(row.agrees for row in known)} of them within 0.1 of theory"
-        ]
-        for row in self.rows:
-            order = "-" if math.isnan(row.fit.order) else f"{row.fit.order:.2f} +- {row.fit.spread:.2f}"
-            told = "" if math.isnan(row.theory.order) else f"theory {row.theory.order:g}"
-            range_text = "" if row.asymptotic else " (not asymptotic)"
-            lines.append(f"{row.motion.name:<17}{row.solver:<13}{order + range_text:<34}{told}")
-        return "\n".join(lines)
+def order_row(
+    motion: KindOfMotion, solver: OrderSolver, samples: int, mean: float, known: float
+) -> dict[str, Any]:
+    """One solver on one motion: the order of its errors about a mean known to an error."""
+    found, (theory, reason) = solver.refined(motion, mean, samples), theory_of(solver.name, motion.name)
+    sizes = 1.0 / found.values if found.setting == "steps" else found.values
+    fit = fit_order(sizes, found.errors, known)
+    ends = [fit.first, fit.last] if fit.order == fit.order else []
+    first, last = found.values[ends] if ends else (math.nan, math.nan)
+    return {
+        **{"solver": solver.name, "motion": motion.name, "law": motion.law_text, "setting": found.setting},
+        **{"settings_from": first, "settings_to": last, "order": fit.order, "spread": fit.spread},
+        **{"theory": theory, "reason": reason},
+        "asymptotic": "yes" if fit.asymptotic and reason not in NOT_PLAIN else "no",
+        "error_from": found.errors[fit.first],
+        "error_to": found.errors[fit.last],
+        **{"title": f"{motion.title} ({motion.law_text})", "errors": found.errors},
+    }
 
 
 class OrdersSection(Record):
@@ -261,32 +165,45 @@ class OrdersSection(Record):
 
     name: ClassVar[str] = "orders"
 
-    motions: Annotated[tuple[Annotated[Any, one_of(MOTIONS)], ...], FILLED] = (*MOTIONS.values(),)
-    steppers: Annotated[tuple[Annotated[Any, one_of(ORDER_SOLVERS)], ...], FILLED] = (
-        *ORDER_SOLVERS.values(),
-    )
+    motions: names_of(MOTIONS) = (*MOTIONS.values(),)  # type: ignore[valid-type]
+    steppers: names_of(ORDER_SOLVERS) = (*ORDER_SOLVERS.values(),)  # type: ignore[valid-type]
     samples: AtLeastOne = 40
 
-    def sections(self) -> list[OrdersSection]:
-        """Itself."""
-        return [self]
-
-    def measure(self, tell: Callable[[str], None]) -> OrdersResult:
+    def measure(self, tell: Tell) -> SectionResult:
         """Measure every solver on every motion that it can follow."""
         rows = []
         for motion in self.motions:
             mean, known, reference = reference_mean(motion)
-            for solver in (each for each in self.steppers if each.refusal(motion) is None):
+            for solver in (each for each in self.steppers if each.takes(motion)):
                 tell(f"{self.name}: {motion.name}, {solver.name}")
-                found = solver.refined(motion, mean, self.samples)
-                fit = fit_order(found.sizes, found.errors, known) if found.sizes.size > 1 else NO_FIT
-                theory = theory_of(solver.name, motion.name)
-                rows.append(OrderRow(solver.name, motion, found, fit, theory, reference))
-        return OrdersResult(rows)
+                row = order_row(motion, solver, self.samples, mean, known)
+                rows.append(row | {"reference": reference})
+        table = pd.DataFrame(rows)
+        title, figure = "Observed orders on every kind of motion", partial(orders_figure, table)
+        shown, said = table.drop(columns=_FOR_THE_FIGURE), orders_summary(table)
+        return SectionResult(self.name, title, shown, said, figure, ORDERS_CAPTION)
 
 
 def reference_mean(motion: KindOfMotion) -> tuple[float, float, str]:
     """The mean friction of a motion, how well it is known, and the method that says so: exact where it can."""
     method = Exact() if Exact().refusal(motion.scene, motion.law) is None else Shooting()
-    found = solve_points(method, [motion.scene], motion.law, REFERENCE_TOLERANCE)
-    return float(found.means[0]), max(float(found.errors[0]), LEAST_REFERENCE_ERROR), method.name
+    found = solve_points(method, [motion.scene], motion.law, REFERENCE_TOLERANCE).iloc[0]
+    return float(found["mean"]), max(float(found["error"]), LEAST_REFERENCE_ERROR), method.name
+
+
+def orders_summary(table: pd.DataFrame) -> str:
+    """A line a motion and solver, asymptotic orders first compared with theory."""
+    known = table[table["asymptotic"] == "yes"]
+    near = int(agrees(known).sum())
+    lines = [f"orders: {len(known)} of {len(table)} asymptotic, {near} of them within 0.1 of theory"]
+    for _, row in table.iterrows():
+        order = "-" if math.isnan(row["order"]) else f"{row['order']:.2f} +- {row['spread']:.2f}"
+        order += "" if row["asymptotic"] == "yes" else " (not asymptotic)"
+        told = "" if math.isnan(row["theory"]) else f"theory {row['theory']:g}"
+        lines.append(f"{row['motion']:<17}{row['solver']:<13}{order:<34}{told}")
+    return "\n".join(lines)
+
+
+def agrees(table: pd.DataFrame) -> pd.Series:
+    """Check for orders within 0.1 of theory."""
+    return (table["order"] - table["theory"]).abs() <= 0.1

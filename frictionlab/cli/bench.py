@@ -31,7 +31,7 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
     those of each section.
     """
     from frictionlab import bench
-    from frictionlab.bench.account import check_folder, save
+    from frictionlab.bench.page import check_folder, save
     from frictionlab.runner.progress import spoken
 
     try:

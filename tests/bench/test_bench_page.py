@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from pathlib import Path
 
 import pytest
+from bench_lists import loaded, texts
 from pages import Page
 from profiles import deep
 
 from frictionlab import bench, cli
-from frictionlab.bench import account
-from frictionlab.bench.account import MOST_ROWS_ON_PAGE, bench_page, circumstances, small_print
-from frictionlab.bench.curve import CurveResult
+from frictionlab.bench import page as pages
+from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page, circumstances, small_print
 from frictionlab.bench.peers import base
 from frictionlab.methods.reduced import common
 
@@ -41,6 +40,7 @@ failures:
     methods: [mdsm]
     peers: [{kind: heyoka, tolerance: 1.0e-6}]
 """
+CURVES = LIST.partition("failures:")[0]
 
 
 @pytest.fixture(scope="module")
@@ -75,9 +75,8 @@ def table_of(page: Page, caption: str) -> tuple[list[str], list[list[str]]]:
 @deep("seconds of charts")
 def test_the_page_holds_every_table_and_every_chart(folder: Path, page: Page) -> None:
     for file in folder.glob("*.csv"):
-        records = list(csv.DictReader(file.read_text().splitlines()))
         _, rows = table_of(page, file.stem)
-        assert len(rows) == len(records) <= MOST_ROWS_ON_PAGE
+        assert len(rows) == len(texts(file)) <= MOST_ROWS_ON_PAGE
         assert any(link.attributes.get("href") == file.name for link in page.all("a"))
     pictures = page.all("img")
     assert len(pictures) == len(list(folder.glob("*.svg"))) == 3
@@ -138,7 +137,7 @@ def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pyte
 
 def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Path, page: Page) -> None:
     told = circumstances()
-    small = small_print()
+    small = small_print(told)
 
     assert told["date"] in small
     assert f"numba {told['packages']['numba']}" in small
@@ -151,12 +150,9 @@ def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Pa
 
 
 def test_peers_that_are_not_installed_are_one_line_of_the_page(folder: Path, page: Page) -> None:
-    lines = [
-        element.text for element in page.all("p") if "heyoka" in element.text and "left out" in element.text
-    ]
+    (line,) = (each.text for each in page.all("p") if "heyoka" in each.text and "left out" in each.text)
 
-    assert len(lines) == 1
-    assert "pip install frictionlab[peers]" in lines[0]
+    assert "pip install frictionlab[peers]" in line
     tables = [table for table in page.all("table") if "Machine" not in table.text]
     assert tables
     assert not any("heyoka" in element.text for element in [*tables, *page.all("pre"), *page.all("h2")])
@@ -170,9 +166,7 @@ def test_files_have_no_spaces(folder: Path) -> None:
 
 @deep("seconds of charts")
 def test_what_was_measured_before_stays_on_the_page(tmp_path: Path) -> None:
-    (tmp_path / "list.yaml").write_text(
-        LIST.partition("failures:")[0].replace("[{kind: shooting", "[exact, {kind: shooting")
-    )
+    (tmp_path / "list.yaml").write_text(CURVES.replace("[{kind: shooting", "[exact, {kind: shooting"))
     for name in ("W1 half dry", "W1 dry"):
         command = ["bench", str(tmp_path / "list.yaml"), "-o", str(tmp_path / "out"), "--only", name]
         assert cli.main(command) == 0
@@ -184,7 +178,7 @@ def test_what_was_measured_before_stays_on_the_page(tmp_path: Path) -> None:
 
 
 def test_of_a_long_table_the_first_rows_are_shown_and_the_file_is_named(folder: Path, tmp_path: Path) -> None:
-    parts = account.read_account(folder)
+    parts = pages.read_account(folder)
     head, *_ = (folder / "failures_mdsm.csv").read_text().splitlines()
     rows = [f"load,scene.normal_load,{i},1,1,ok,,,,,," for i in range(MOST_ROWS_ON_PAGE + 1)]
     (tmp_path / "failures_mdsm.csv").write_text("\n".join([head, *rows]))
@@ -213,19 +207,16 @@ def test_a_page_that_a_person_wrote_is_not_overwritten(
 
 
 @deep("seconds of a bench")
-def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "list.yaml").write_text(
-        LIST.partition("failures:")[0].replace("mdsm, ", "").replace("heyoka", "scipy")
-    )
-
-    lines: list[str] = []
-    (found,) = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lines.append)
+def test_every_setting_is_told_with_its_place(tmp_path: Path) -> None:
+    text, lines = CURVES.replace("mdsm, ", "").replace("heyoka", "scipy"), list[str]()
+    (found,) = bench.measure(loaded(text, tmp_path).only(["W1 dry"]), lines.append)
 
     assert [re.sub(r" \(.*", "", line) for line in lines] == [
         "W1 dry: references", "W1 dry: shooting, tolerance 0.001", "W1 dry: shooting, tolerance 1e-06",
         "W1 dry: harmonic_balance, as is", "W1 dry: scipy, as is",
     ]  # fmt: skip
     assert [line.rpartition("(")[2] for line in lines] == [f"{n} of 5)" for n in range(1, 6)]
-    assert isinstance(found, CurveResult)
-    assert "| model alone, μs | its error alone, μs |" in found.markdown()
-    assert json.loads(json.dumps(account.entry_of(found, [], []))).keys() == account.ENTRY_KEYS
+    (name,) = pages.write_table(found, tmp_path)
+    text = (tmp_path / name).with_suffix(".md").read_text()
+    assert "| model alone, μs | its error alone, μs |" in text
+    assert json.loads(json.dumps(pages.entry_of(found, [], []))).keys() == pages.ENTRY_KEYS

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
-from typing import Any
 
+import pandas as pd
 import pytest
+from bench_lists import changed, measured, mistake, texts
 
-from frictionlab import bench, cli
-from frictionlab.bench.curve import BenchedModel, ModelRow, ModelsResult, front
-from frictionlab.bench.record import NO_TIME, BenchSetting, Contender, Row, Times
-from frictionlab.values.notes import StudyError
+from frictionlab import cli
+from frictionlab.bench.models import front
 
 LIST = """
 schema: 1
@@ -32,104 +30,68 @@ models:
 """
 
 
-def measured(tmp_path: Path, text: str = LIST) -> ModelsResult:
-    (tmp_path / "list.yaml").write_text(text)
-    (section,) = bench.load_bench(tmp_path / "list.yaml").sections
-    found: Any = section.measure(lambda line: None)
-    return found
-
-
 @pytest.fixture(scope="module")
-def soft(tmp_path_factory: pytest.TempPathFactory) -> ModelsResult:
-    return measured(tmp_path_factory.mktemp("list"))
+def soft(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
+    """The table of the list."""
+    return measured(LIST, tmp_path_factory.mktemp("list"))[0].table
 
 
-def test_every_method_on_every_law_and_scene(soft: ModelsResult) -> None:
-    labels = [each.model.label for each in soft.rows]
-    assert labels == [
-        label
-        for label in ("coulomb", "less", "coulomb, without transverse", "less, without transverse")
-        for _ in range(3)
-    ]
-    assert [each.label for each in soft.rows[:3]] == [
-        "exact",
-        "shooting, tolerance 0.001",
-        "shooting, tolerance 1e-06",
-    ]
-    assert all(each.answered for each in soft.rows)
+def test_every_method_on_every_law_and_scene(soft: pd.DataFrame) -> None:
+    models = [(law, scene) for scene in ("whole", "without transverse") for law in ("coulomb", "less")]
+    settings = [("exact", "nan"), ("shooting", "0.001"), ("shooting", "1e-06")]
+
+    assert [*zip(soft["law"], soft["scene"], strict=True)] == [model for model in models for _ in settings]
+    assert [*zip(soft["method"], soft["value"].map(str), strict=True)] == settings * 4
+    assert (soft["ok"] == 2).all()
+    assert soft["largest_error"].notna().all()
 
 
-def test_distances_are_those_from_the_richest_model(soft: ModelsResult) -> None:
-    off = {
-        (each.model.law, each.model.scene): each.row.largest for each in soft.rows if each.label == "exact"
-    }
-    assert off["coulomb", ""] < 1e-12
+def test_distances_are_those_from_the_richest_model(soft: pd.DataFrame) -> None:
+    exact = soft[soft["method"] == "exact"].set_index(["law", "scene"])
+    off = exact["largest_error"]
+    assert off["coulomb", "whole"] < 1e-12
     # without a load across the belt the transverse motion does not matter (theorem T2), the coefficient does
     assert off["coulomb", "without transverse"] < 1e-12
-    assert off["less", ""] == pytest.approx(off["less", "without transverse"], abs=1e-12)
-    assert off["less", ""] > 1e-3
+    assert off["less", "whole"] == pytest.approx(off["less", "without transverse"], abs=1e-12)
+    assert off["less", "whole"] > 1e-3
 
 
-def row(seconds: float, error: float, ok: int = 2) -> ModelRow:
-    contender = Contender(f"{seconds:g}", "exact", (), None)
-    counts = {"ok": ok, "refused": 2 - ok, "failed": 0, "not_unique": 0}
-    times = Times(seconds, (seconds,) * 3, 1)
-    told = Row(
-        contender, BenchSetting("", 0.0, 1e-8), 2, counts, "", error, error, error, None, times, NO_TIME, None
-    )
-    return ModelRow(BenchedModel("law", "", None), told)  # type: ignore[arg-type]
+def rows(*told: tuple[float, float, int]) -> pd.DataFrame:
+    """Settings with a time, an error and so many answers of two."""
+    return pd.DataFrame(told, columns=["mean_us", "largest_error", "ok"]).assign(points=2)
 
 
 def test_the_front_is_what_nothing_cheaper_is_as_near_as() -> None:
-    rows = [
-        row(3.0, 1e-6),
-        row(1.0, 1e-2),
-        row(2.0, 1e-2),
-        row(4.0, 1e-5),
-        row(5.0, 0.95e-6),
-        row(0.5, 1e-9, ok=1),
-    ]
-    assert [each.row.mean.least for each in front(rows)] == [1.0, 3.0]
-    assert front([row(1.0, math.nan)]) == []
+    table = rows((3, 1e-6, 2), (1, 1e-2, 2), (2, 1e-2, 2), (4, 1e-5, 2), (5, 0.95e-6, 2), (0.5, 1e-9, 1))
+    assert front(table)["mean_us"].tolist() == [1.0, 3.0]
+    assert front(rows((1, math.nan, 2))).empty
 
 
 def test_the_command_writes_table_chart_and_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "list.yaml").write_text(LIST)
     assert cli.main(["bench", str(tmp_path / "list.yaml"), "-o", str(tmp_path / "out")]) == 0
     assert capsys.readouterr().out.startswith("models_soft: errors against coulomb (exact at 1e-12)\n")
-    with (tmp_path / "out" / "models_soft.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == 12
-    assert {each["scene"] for each in rows} == {"whole", "without transverse"}
-    assert "yes" in {each["front"] for each in rows}
+    table = texts(tmp_path / "out" / "models_soft.csv")
+    assert len(table) == 12
+    assert {*table["scene"]} == {"whole", "without transverse"}
+    assert "yes" in set(table["front"])
     assert (tmp_path / "out" / "models_soft.svg").exists()
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "told"),
-    [
-        ("without: [transverse]", "without: [belt_vibration]", "the scene has no 'belt_vibration'"),
-        ("without: [transverse]", "without: [damping_ratio]", "scene.damping_ratio: required key"),
-        (
-            "{scene.belt_speed: [5, 20]}",
-            "{scene.belt_speed: [5], scene.normal_load: [5, 20]}",
-            "sweeps the belt speed alone",
-        ),
-        (
-            "references: [{kind: exact, tolerance: 1.0e-12}]",
-            "title: x",
-            "references: required key is missing",
-        ),
-        ("name: soft", "name: [soft]", "name: "),
-        (
-            "methods: [exact, {kind: shooting, tolerance: [1.0e-3, 1.0e-6]}]",
-            "title: x",
-            "there is nothing to measure",
-        ),
-        ("repeats: 1", "repeats: 0", "must be >= 1"),
-    ],
-)
+CUT, SWEPT, KNOWN = "without: [transverse]", "[5, 20]}", "references: [{kind: exact, tolerance: 1.0e-12}]"
+METHODS = "methods: [exact, {kind: shooting, tolerance: [1.0e-3, 1.0e-6]}]"
+MISTAKES = [
+    (CUT, "without: [belt_vibration]", "the scene has no 'belt_vibration'"),
+    (CUT, "without: [damping_ratio.x]", "the scene has no 'damping_ratio.x'"),
+    (CUT, "without: [damping_ratio]", "scene.damping_ratio: required key"),
+    (SWEPT, "[5], scene.normal_load: [5, 20]}", "sweeps the belt speed alone"),
+    (KNOWN, "title: x", "references: required key is missing"),
+    ("name: soft", "name: [soft]", "name: "),
+    (METHODS, "title: x", "there is nothing to measure"),
+    ("repeats: 1", "repeats: 0", "must be >= 1"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "told"), MISTAKES)
 def test_mistakes_have_their_line(tmp_path: Path, old: str, new: str, told: str) -> None:
-    assert old in LIST
-    with pytest.raises(StudyError, match=told):
-        measured(tmp_path, LIST.replace(old, new))
+    assert told in str(mistake(changed(LIST, old, new), tmp_path))

@@ -11,7 +11,7 @@ from drawn_figures import drawn
 from oracle import table_in_the_plane
 from profiles import deep
 
-from frictionlab.bench.charts.curve import OURS, THEIRS
+from frictionlab.bench.charts import OURS, THEIRS
 from frictionlab.charts.bifurcation import LONGER, PERIOD_MARKERS, WILD
 from frictionlab.charts.looks import contrast, luminance, with_contrast
 from frictionlab.charts.needs import ERROR

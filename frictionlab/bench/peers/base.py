@@ -14,41 +14,28 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import Floats, Record
 
-CLOSURE = 1.0
-"""Gap of a closed period in tolerances, as the change of velocity that so much mean friction makes in a period."""
 NOISE_PERIODS = 8
 """Consecutive periods without a smaller gap: the rest is the error of the integrator."""
 LONGEST_TRANSIENT = 5000
 
 
-class ClosureTest:
-    """Whether a motion has closed: its gap from period to period against what is asked, or against its own noise."""
-
-    def __init__(self, tolerance: float, normal_load: float, period: float) -> None:
-        self._enough = CLOSURE * tolerance * normal_load * period
-        self._least, self._since = math.inf, 0
-
-    def done(self, gap: float) -> bool:
-        """Take in the gap of one more period. Raises ArithmeticError where it is no number."""
-        if not math.isfinite(gap):
-            raise ArithmeticError("the state is not finite")
-        self._since = 0 if gap < self._least else self._since + 1
-        self._least = min(gap, self._least)
-        return gap <= self._enough or self._since >= NOISE_PERIODS
-
-
 def closed_mean(
-    one_period: Callable[[Floats], Floats], state: Floats, places: slice, closing: ClosureTest, period: float
+    one_period: Callable[[Floats], Floats], state: Floats, places: slice, period: float, enough: float
 ) -> Floats:
     """The mean friction of a motion, or of one a column, period by period until it closes.
 
     state: its last number is the integral of the friction coefficient, from zero in each period; places: those of
-    positions and velocities. Raises ArithmeticError for one that does not close.
+    positions and velocities. enough: a gap that counts as closed: the change of velocity that a mean friction of the
+    tolerance makes in a period. Raises ArithmeticError for a motion that does not close.
     """
+    least, since = math.inf, 0
     for _ in range(LONGEST_TRANSIENT):
         end = one_period(state)
         gap = float(np.max(np.linalg.norm((end - state)[places], axis=0)))
-        if closing.done(gap):
+        if not math.isfinite(gap):
+            raise ArithmeticError("the state is not finite")
+        least, since = min(gap, least), 0 if gap < least else since + 1
+        if gap <= enough or since >= NOISE_PERIODS:
             return -end[-1] / period
         state = end.copy()
         state[-1] = 0.0
@@ -70,10 +57,8 @@ class Peer(Record, ABC):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Why this peer cannot do this scene and law, or is not there; None when it can."""
-        if (missing := self.missing()) is not None:
-            return missing
-        if (other := self.other_law(law)) is not None:
-            return other
+        if (told := self.missing() or self.other_law(law)) is not None:
+            return told
         if scene.degrees_of_freedom == 0 or scene.undriven:
             return f"{self.name} is set up for driven scenes with a mass"
         return None

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
+from frictionlab.bench.peers.base import Peer, closed_mean
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
 from frictionlab.scene.body import Mass
@@ -31,12 +31,8 @@ def free_orbit(damping: float, stiffness: float, frequency: float, force: comple
 
 def start(mass: Mass) -> tuple[float, float, float, float]:
     """x1, v1, x2, v2 on the friction-free orbit at t = 0."""
-    along = free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force)
-    across = (0.0, 0.0)
-    if mass.transverse_force != 0:
-        numbers = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
-        across = free_orbit(*numbers)
-    return *along, *across
+    across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
+    return (*free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force), *free_orbit(*across))
 
 
 class Equations(ABC):
@@ -90,9 +86,7 @@ class Sliding(Equations):
 class Creeping(Sliding):
     """The same along the belt, with friction smoothed by tanh over a width."""
 
-    def __init__(self, scene: Scene, law: FrictionLaw, most_calls: int, width: float) -> None:
-        super().__init__(scene, law, most_calls)
-        self.width = width
+    width: float
 
     def rates(self, turn: complex, y: list[float]) -> list[float]:
         m, x, v = self.mass, y[0], y[1]
@@ -191,15 +185,12 @@ class ScipyBristle(Peer):
         return np.array([_settled(each, solver, tolerance) for each in equations])
 
 
-def _settled(equations: Equations, solver: str, tolerance: float) -> Floats:
-    closing = ClosureTest(tolerance, equations.mass.normal_load, equations.period)
-    return closed_mean(
-        lambda state: one_period(equations, state, solver, tolerance),
-        equations.start,
-        equations.places,
-        closing,
-        equations.period,
-    )
+def _settled(motion: Equations, solver: str, tolerance: float) -> Floats:
+    def period(state: Floats) -> Floats:
+        return one_period(motion, state, solver, tolerance)
+
+    enough = tolerance * motion.mass.normal_load * motion.period
+    return closed_mean(period, motion.start, motion.places, motion.period, enough)
 
 
 def one_period(equations: Equations, state: Floats, solver: str, tolerance: float) -> Floats:
@@ -209,11 +200,9 @@ def one_period(equations: Equations, state: Floats, solver: str, tolerance: floa
         return by_solve_ivp(equations, state, solver, settings).y[:, -1]
     from scipy.integrate import odeint
 
-    settings |= {"mxstep": MOST_ODEINT_STEPS}
+    settings |= {"mxstep": MOST_ODEINT_STEPS, "tfirst": True, "full_output": True}
     with warnings.catch_warnings(action="ignore"):  # its message says the same
-        found, told = odeint(
-            equations, state, [0.0, equations.period], tfirst=True, full_output=True, **settings
-        )
+        found, told = odeint(equations, state, [0.0, equations.period], **settings)
     if told["message"] != "Integration successful.":
         raise ArithmeticError(f"odeint: {told['message']}")
     return found[-1]

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
+from frictionlab.bench.peers.base import Peer, closed_mean
 from frictionlab.bench.peers.equations import start
 from frictionlab.bench.peers.scipy_events import LineMotion, MotionState, first_step, means
 from frictionlab.laws.base import FrictionLaw
@@ -40,19 +40,12 @@ class Heyoka(Peer):
         friction = law.sliding_friction(1.0)
         if scenes[0].load_along_belt_only:
             return means(_line(mass, friction * mass.normal_load, tolerance), scenes, tolerance)
+        import heyoka as hy
+
         speeds = np.array([scene.belt_speed for scene in scenes])
-        lanes = self.lanes or _widest()
-        found = [
-            _plane(mass, friction, speeds[i : i + lanes], tolerance, lanes)
-            for i in range(0, len(speeds), lanes)
-        ]
-        return np.concatenate(found)
-
-
-# Compiled integrators are kept: a user makes them once for a curve.
-@lru_cache(maxsize=16)
-def _line(mass: Mass, limit: float, tolerance: float) -> _Line:
-    return _Line(mass, limit, tolerance)
+        lanes = self.lanes or int(hy.recommended_simd_size())
+        batches = (speeds[i : i + lanes] for i in range(0, len(speeds), lanes))
+        return np.concatenate([_plane(mass, friction, each, tolerance, lanes) for each in batches])
 
 
 class _Line(LineMotion):
@@ -82,6 +75,9 @@ class _Line(LineMotion):
         stick.propagate_until(self.period)
         end = stick.time
         return MotionState(end, place.x + self.belt_speed * (end - place.t), self.belt_speed)
+
+
+_line = lru_cache(maxsize=16)(_Line)  # compiled integrators are kept: a user makes them once for a curve
 
 
 def _slip(mass: Mass, limit: float, tolerance: float) -> Any:
@@ -141,8 +137,8 @@ def _plane(mass: Mass, friction: float, speeds: Floats, tolerance: float, lanes:
         return integrator.state.copy()
 
     state = np.repeat(np.array([*start(mass), 0.0])[:, None], lanes, axis=1)
-    closing = ClosureTest(tolerance, mass.normal_load, period)
-    return closed_mean(one_period, state, slice(0, 4), closing, period)[: len(speeds)]
+    enough = tolerance * mass.normal_load * period
+    return closed_mean(one_period, state, slice(0, 4), period, enough)[: len(speeds)]
 
 
 @lru_cache(maxsize=16)
@@ -166,10 +162,3 @@ def plane_system(mass: Mass, friction: float, belt_speed: Any, loads: tuple[Any,
     a1 = loads[0] - m.damping * v1 - x1 - m.normal_load * rub * slip
     a2 = loads[1] - m.transverse_damping * v2 - m.transverse_stiffness * x2 - m.normal_load * rub * v2
     return [(x1, v1), (v1, a1), (x2, v2), (v2, a2), (friction_impulse, rub * slip)]
-
-
-@lru_cache(maxsize=1)
-def _widest() -> int:
-    import heyoka as hy
-
-    return int(hy.recommended_simd_size())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -30,32 +30,26 @@ HUGE = 1e300
 """A tolerance at which every step passes."""
 
 
-class PeriodByPeer(NamedTuple):
-    """The mean friction over the period, NaN where the solver gave up, the usual step, and why it gave up."""
-
-    mean: float
-    step: float
-    reason: str
-
-
 def equations_of(scene: Scene, law: FrictionLaw, width: float | None) -> Equations:
     """The equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
     if law.memory_kind == "bristle":
         return OnBristles(scene, law, MOST_CALLS_OF_A_PERIOD)
     if width is None:
         return Sliding(scene, law, MOST_CALLS_OF_A_PERIOD)
-    return Creeping(scene, law, MOST_CALLS_OF_A_PERIOD, width)
+    creeping = Creeping(scene, law, MOST_CALLS_OF_A_PERIOD)
+    creeping.width = width
+    return creeping
 
 
-def by_scipy(solver: str, equations: Equations, state: Floats, tolerance: float) -> PeriodByPeer:
-    """One period; the last number of the state is the integral of the friction coefficient."""
+def by_scipy(solver: str, equations: Equations, state: Floats, tolerance: float) -> tuple[float, float]:
+    """Mean friction over one period, and the usual step. Raises ArithmeticError or ValueError where it gives up.
+
+    The last number of the state is the integral of the friction coefficient.
+    """
     settings = {"rtol": max(tolerance, LEAST_RTOL), "atol": tolerance}
-    try:
-        with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
-            found = by_solve_ivp(equations, state, solver, settings)
-    except (ArithmeticError, ValueError) as problem:
-        return PeriodByPeer(math.nan, math.nan, str(problem))
-    return PeriodByPeer(-float(found.y[-1, -1]) / equations.period, float(np.median(np.diff(found.t))), "")
+    with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
+        found = by_solve_ivp(equations, state, solver, settings)
+    return -float(found.y[-1, -1]) / equations.period, float(np.median(np.diff(found.t)))
 
 
 def growth_by_scipy(solver: str, z: float) -> float:
@@ -70,8 +64,8 @@ def growth_by_scipy(solver: str, z: float) -> float:
 
 def by_heyoka(
     scene: Scene, law: FrictionLaw, state: Floats, width: float | None, tolerance: float
-) -> PeriodByPeer:
-    """One period of smoothed friction along the belt, or of slip in the plane."""
+) -> tuple[float, float]:
+    """The same of smoothed friction along the belt, or of slip in the plane."""
     mass, friction = scene.mass(), law.sliding_friction(1.0)
     period = 2.0 * math.pi / mass.frequency
     integrator = _creep(tolerance) if width is not None else _plane(tolerance)
@@ -82,8 +76,8 @@ def by_heyoka(
     outcome, _, _, steps, *_ = integrator.propagate_until(period)
     mean = -float(integrator.state[-1]) / period
     if "time_limit" not in str(outcome) or not math.isfinite(mean):
-        return PeriodByPeer(math.nan, math.nan, f"heyoka: {outcome}")
-    return PeriodByPeer(mean, period / max(1, steps), "")
+        raise ArithmeticError(f"heyoka: {outcome}")
+    return mean, period / max(1, steps)
 
 
 @lru_cache(maxsize=128)

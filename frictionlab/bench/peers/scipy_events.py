@@ -16,7 +16,7 @@ from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
+from frictionlab.bench.peers.base import Peer, closed_mean
 from frictionlab.bench.peers.equations import LEAST_RTOL, start
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.body import Mass
@@ -94,12 +94,11 @@ class LineMotion(ABC):
 
 def means(line: LineMotion, scenes: Sequence[Scene], tolerance: float) -> Floats:
     """The mean friction of each scene, from the friction-free orbit until the period closes."""
-    found = []
+    found, state = [], np.array([*start(line.mass)[:2], 0.0])
+    enough = tolerance * line.mass.normal_load * line.period
     for scene in scenes:
         line.belt_speed = scene.belt_speed
-        closing = ClosureTest(tolerance, line.mass.normal_load, line.period)
-        state = np.array([*start(line.mass)[:2], 0.0])
-        found.append(closed_mean(line.one_period, state, slice(0, 2), closing, line.period))
+        found.append(closed_mean(line.one_period, state, slice(0, 2), line.period, enough))
     return np.array(found)
 
 
@@ -163,13 +162,8 @@ class _Legs(LineMotion):
 
         begun, place = place.t, first_step(self, side, place)
         settings = {"method": self.solver, "rtol": max(self.tolerance, LEAST_RTOL), "atol": self.tolerance}
-        found = solve_ivp(
-            self._rates(side),
-            (place.t, self.period),
-            [place.x, place.v],
-            events=self._end_of_slip(side),
-            **settings,
-        )
+        span, state = (place.t, self.period), [place.x, place.v]
+        found = solve_ivp(self._rates(side), span, state, events=self._end_of_slip(side), **settings)
         if found.status < 0:
             raise ArithmeticError(f"solve_ivp: {found.message}")
         x, v = found.y[:, -1]

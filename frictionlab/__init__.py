@@ -59,7 +59,7 @@ _HOMES = {
     "compare": "frictionlab.report.run",
     "curve": "frictionlab.runner.api",
     "describing_function": "frictionlab.analysis.response",
-    "drift_speed": "frictionlab.runner.drift",
+    "drift_speed": "frictionlab.runner.steady_state",
     "equivalent": "frictionlab.analysis.fit.equivalent",
     "fit": "frictionlab.analysis.fit.api",
     "impedance": "frictionlab.analysis.response",

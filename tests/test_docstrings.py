@@ -18,7 +18,7 @@ import frictionlab as fl
 from frictionlab.analysis.fit.equivalent import Equivalent
 from frictionlab.analysis.fit.result import FittedLaws
 from frictionlab.analysis.needs.needs import Needs
-from frictionlab.runner.drift import DriftSpeed
+from frictionlab.runner.steady_state import DriftSpeed
 
 RESULTS = fl.Run, fl.SteadyState, Needs, FittedLaws, Equivalent, DriftSpeed
 """What users are handed: every method and property of theirs is public."""

@@ -19,16 +19,16 @@ from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Scene
 from frictionlab.values.quantities import Floats
 
-FINE = 1e-11
+_FINE = 1e-11
 """Tolerance of the means that are compared; those that a method leaves less accurate are taken with their error."""
-WIDEST = 0.02
+_WIDEST = 0.02
 """First offset, in shares of a number."""
 RADIAN = 57.3
 """Size of a phase [degrees]."""
 BLUNT = 0.05
 """Error of a derivative that is none, of the derivative or of the mean over the parameter."""
 BENDS = "the mean bends too sharply here: no offset is small enough for a derivative"
-COLUMNS = "parameter", "value", "derivative", "error", "elasticity", "reason"
+_COLUMNS = "parameter", "value", "derivative", "error", "elasticity", "reason"
 
 
 def sensitivities(
@@ -81,7 +81,7 @@ def sensitivities(
     [0.246794, 0.009882]
     """
     pair = Pair(given_scene(scene), given_law(law))
-    numbers, finest = pair.numbers(), min(given_tolerance(tolerance), FINE)
+    numbers, finest = pair.numbers(), min(given_tolerance(tolerance), _FINE)
     asked = asked_for(numbers, parameters)
     state = steady_state(pair.scene, pair.law, method, tolerance)
     why = _refusal(state)
@@ -94,7 +94,7 @@ def sensitivities(
             nothing if why else _by_number(pair, path, numbers[path], state, partial(_mean, method, finest))
         )
         rows.append(_row(path, numbers[path], state, found))
-    return pd.DataFrame(rows, columns=list(COLUMNS))
+    return pd.DataFrame(rows, columns=list(_COLUMNS))
 
 
 def _refusal(state: SteadyState) -> str:
@@ -123,7 +123,7 @@ def _by_number(pair: Pair, path: str, number: float, state: SteadyState, mean: A
         return [mean(pair, path, number + offset) for offset in offsets.tolist()]
 
     noise = np.array([state.error + 1e-16])
-    found = derivative(changed, np.array([state.mean_friction]), WIDEST * size, noise)
+    found = derivative(changed, np.array([state.mean_friction]), _WIDEST * size, noise)
     least = max(abs(float(found.value[0])), abs(state.mean_friction) / size)
     blunt = not found.reason and found.error[0] > BLUNT * least
     return (

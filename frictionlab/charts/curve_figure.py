@@ -49,7 +49,7 @@ from frictionlab.values.columns import unit_shown, word
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
 KEPT_LEVEL = 1e-6  # of mean friction beyond V_lin: what differs by less is level
 LEAST_SHARE = 1e-3  # of the largest number of a curve on a logarithmic axis
-ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
+_ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LIKE_RANGES = 2.5  # ranges of pictures of one quantity that differ by less have one scale
 
 Panel = tuple[SweptValue, ...]
@@ -280,4 +280,4 @@ def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
         return False
     levels = [float(curve.median()) for curve in known]
     low, high = min(levels), max(levels)
-    return high > 30.0 * low > ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low
+    return high > 30.0 * low > _ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low

@@ -29,7 +29,7 @@ from frictionlab.values.units import handy_unit
 
 POINTS_SHOWN = 1000
 """Points of a path of slip in the first picture: some of its middle, one after the other."""
-MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
+_MEASURED: Any = {"color": "0.35", "linestyle": "none", "marker": "o", "markersize": 2.6}
 LAGS = 200
 FEW_TICKS = 5
 
@@ -37,7 +37,7 @@ FEW_TICKS = 5
 def fit_figure(found: Any, title: str = "") -> Figure:
     """Three pictures: measured and fitted; residuals along belt speed or time; their autocorrelation."""
     looks = [CYCLE[place % len(CYCLE)] for place in range(len(found.fitted))]
-    entries: list[Any] = [Line2D([], [], label="measured", **MEASURED)]
+    entries: list[Any] = [Line2D([], [], label="measured", **_MEASURED)]
     entries += [
         Line2D([], [], label=each.model.words, **look) for each, look in zip(found.fitted, looks, strict=True)
     ]
@@ -61,7 +61,7 @@ def _draw_measured(axes: Axes, found: Any, looks: list[Any]) -> None:
     """Mean friction against belt speed, a line for each law and scene."""
     measured = found.measured
     speeds, label = _along(measured)
-    axes.errorbar(speeds, measured.values, yerr=measured.sigma, elinewidth=0.7, zorder=1, **MEASURED)
+    axes.errorbar(speeds, measured.values, yerr=measured.sigma, elinewidth=0.7, zorder=1, **_MEASURED)
     for each, look in zip(found.fitted, looks, strict=True):
         for places in measured.scenes_rising:
             axes.plot(speeds[places], each.said[places], **look)
@@ -82,7 +82,7 @@ def _draw_loops(axes: Axes, found: Any, looks: list[Any]) -> None:
     """Friction against slip, some of the path."""
     shown = _shown(len(found.measured.values))
     slip = found.measured.table["slip"].to_numpy(dtype=float)[shown]
-    axes.plot(slip, found.measured.values[shown], zorder=1, **MEASURED | {"markersize": 1.2})
+    axes.plot(slip, found.measured.values[shown], zorder=1, **_MEASURED | {"markersize": 1.2})
     for each, look in zip(found.fitted, looks, strict=True):
         axes.plot(slip, each.said[shown], **look)
     axes.set(xlabel="slip", ylabel="friction coefficient")

@@ -20,7 +20,7 @@ from frictionlab.values.printable import printable
 PLUS = " + "
 """Between the things of a set in the column ``without``."""
 BAR, AROUND = 0.19, 0.6  # of a bar and of what stands around a panel [inch]
-BELOW = 5
+_BELOW = 5
 """Decades that the axis goes below the tolerance: less is as good as nothing."""
 VERDICT_LOOKS: dict[str, Any] = {
     "needed": {"facecolor": "#16324f", "edgecolor": "#16324f"},
@@ -86,7 +86,7 @@ def _draw_panel_of_needs(axes: Axes, names: list[str], rows: pd.DataFrame, ends:
 def _ends(table: pd.DataFrame) -> tuple[float, float]:
     """Return the ends of the axis, the same for all curves."""
     largest = (table["change"].abs() + table["change_error"]).max()
-    return float(table["within"].min()) * 10.0**-BELOW, 3.0 * float(max(largest, table["within"].max()))
+    return float(table["within"].min()) * 10.0**-_BELOW, 3.0 * float(max(largest, table["within"].max()))
 
 
 def _draw_bar(axes: Axes, place: int, row: Any, least: float) -> None:

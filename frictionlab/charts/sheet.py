@@ -68,7 +68,7 @@ def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "p
 
 
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
-HIGHEST = 235.0 / 25.4  # of a figure whose width is asked for [inch]
+_HIGHEST = 235.0 / 25.4  # of a figure whose width is asked for [inch]
 MOST_BELOW = 4  # pictures one below the other in a column of a journal
 LEGEND_FONT = 7  # [point]
 HANDLE = 3.5  # length of a sample of a line, long enough for its dashes [letter]
@@ -144,7 +144,7 @@ class Sheet(NamedTuple):
             return
         lines = _add_legend(self.figure, entries, about)
         height = self.figure.get_figheight() + LINE * lines
-        self.figure.set_figheight(min(height, HIGHEST) if self.limited else height)
+        self.figure.set_figheight(min(height, _HIGHEST) if self.limited else height)
 
     def axes(self, place: int) -> Axes:
         """Those of the picture at this place, from 0, row by row."""

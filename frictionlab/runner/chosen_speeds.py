@@ -18,7 +18,7 @@ from frictionlab.runner.packing import numbers_of
 from frictionlab.runner.pieces import Piece, TableBlock
 from frictionlab.runner.solving import Solving
 from frictionlab.scene.scene import Scene
-from frictionlab.study.axes import CLOSEST, MOST_CHOSEN, WITHIN, SpeedRange
+from frictionlab.study.axes import CLOSEST_SPEEDS, MOST_CHOSEN, WITHIN, SpeedRange
 from frictionlab.study.grid import StudyCurve, grid_size
 from frictionlab.study.study import Study
 from frictionlab.theory import friction_free_velocity
@@ -116,7 +116,7 @@ def _alike(curvature: Floats) -> NDArray[np.bool_]:
 Known = tuple[Floats, Floats, Floats]
 """Belt speeds of a curve, ascending, their mean friction and its error; NaN where there is no number."""
 
-SHARES = (0.025, 0.05, *(0.1 * k for k in range(1, 10)))
+_SHARES = (0.025, 0.05, *(0.1 * k for k in range(1, 10)))
 """Shares of V_lin that the shape of a curve is read from where no more belt speeds are asked for."""
 
 
@@ -191,7 +191,7 @@ def _breaks(laws: Sequence[FrictionLaw], scene: Scene, along: SpeedRange) -> Flo
     scale = 1.0 if si is None else si.scales.velocity
     sizes = {scale * friction_free_velocity(scene, law) for law in laws}
     found = [sign * size for size in sizes if math.isfinite(size) for sign in (-1.0, 1.0)]
-    near = CLOSEST * (along.stop - along.start)
+    near = CLOSEST_SPEEDS * (along.stop - along.start)
     return np.unique([each for each in found if along.start + near < each < along.stop - near])
 
 
@@ -208,9 +208,12 @@ def _first(along: SpeedRange, breaks: Floats, named: Floats) -> Floats:
 
     Of a curve that bends within few of them also shares of V_lin, from which its shape can be read.
     """
-    even, near = np.array(along.first()), CLOSEST * (along.stop - along.start)
+    even, near = np.array(along.first()), CLOSEST_SPEEDS * (along.stop - along.start)
     below = [
-        share * each for each in breaks if (np.abs(even) < abs(each)).sum() < len(SHARES) for share in SHARES
+        share * each
+        for each in breaks
+        if (np.abs(even) < abs(each)).sum() < len(_SHARES)
+        for share in _SHARES
     ]
     inside = [each for each in below if along.start + near < each < along.stop - near]
     wanted = np.unique(np.concatenate([breaks, named, inside]))
@@ -220,7 +223,7 @@ def _first(along: SpeedRange, breaks: Floats, named: Floats) -> Floats:
 
 def _asked(known: Sequence[Known], breaks: Floats, along: SpeedRange) -> Floats:
     """Return the belt speeds that the curves of one scene still need."""
-    closest = CLOSEST * (along.stop - along.start)
+    closest = CLOSEST_SPEEDS * (along.stop - along.start)
     return np.unique(np.concatenate([halves_to_add(*each, breaks, along.within, closest) for each in known]))
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 
 from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import counted, in_words
-from frictionlab.study.expectations import COMPARISONS, Expectation, WhereValue
+from frictionlab.study.expectations import CLAIMED, Expectation, WhereValue
 from frictionlab.values.columns import BELT_SPEED, INPUTS, belt_speed, given
 from frictionlab.values.printable import with_error
 
@@ -122,7 +122,7 @@ def _claim(expectation: Expectation) -> str:
 
 
 def _comparator(expectation: Expectation) -> tuple[str, float]:
-    for name in COMPARISONS:
+    for name in CLAIMED:
         value = getattr(expectation, name)
         if value is not None:
             return name, value

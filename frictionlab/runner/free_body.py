@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from frictionlab.methods.base import STATISTICAL
-from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.under_way import UnderWay, told_to
 from frictionlab.methods.words import AUTO, ModelWord
+from frictionlab.runner.drift import drift_of
 from frictionlab.runner.part import Part, beside_in_si, si_scales
 from frictionlab.runner.pieces import Chunk
-from frictionlab.scene.free_body import WEIGHTS, by_new_events, held, springs_for, without_spring
+from frictionlab.scene.free_body import WEIGHTS_OF_SPRINGS, by_new_events, held, springs_for, without_spring
 from frictionlab.scene.units import Units, measured
+from frictionlab.study.registry import method_class
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.values.columns import ALSO_IN_SI, COLUMNS
 from frictionlab.values.quantities import Floats
@@ -50,13 +51,11 @@ def solved_on_springs(chunk: Chunk, solve: Callable[[Chunk], Part]) -> Part:
     part = _limit_of_springs(chunk, solve)
     close = part.numbers["error"] <= chunk.task.tolerance
     if chunk.method.name == "auto" and np.isfinite(part.numbers["error"][~close]).any():
-        shot = _limit_of_springs(replace(chunk, method=Shooting()), solve)
+        shot = _limit_of_springs(replace(chunk, method=method_class("shooting")()), solve)
         if np.count_nonzero(shot.numbers["error"] <= chunk.task.tolerance) > np.count_nonzero(close):
             word = f"{AUTO}shooting, {ModelWord.CLOSER})"
             part, shot.text["model"][:] = shot, [model + word for model in shot.text["model"]]
     if not DRIFT.isdisjoint(chunk.task.columns):
-        from frictionlab.runner.drift import drift_of  # which solves by the function that calls this one
-
         with told_to(UnderWay(0.0, 0.0)):
             drift = drift_of(chunk, solve)
         reasons = part.text["reason"]
@@ -145,7 +144,7 @@ def limit_of_columns(found: Sequence[tuple[Mapping[str, Any], Units]]) -> dict[s
             values = values + 360.0 * np.round((values[-1] - values) / 360.0)
         limit[name], change[name] = without_spring(values)
         if name.endswith("error"):
-            limit[name] = np.tensordot(np.abs(WEIGHTS), values, 1)
+            limit[name] = np.tensordot(np.abs(WEIGHTS_OF_SPRINGS), values, 1)
         if name in _COUNTS:
             limit[name] = values[-1]
     for name in (each for each in limit if each.endswith("error")):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from frictionlab.runner.folder import RunFolder, run_folder
 from frictionlab.runner.results import Results
-from frictionlab.runner.store import BESIDE, own_code
+from frictionlab.runner.store import BESIDE_A_PIECE, own_code
 
 MADE_BY = "charts", "report"
 """Rooms of frictionlab that make them."""
@@ -35,7 +35,7 @@ def _folder(done: Results) -> RunFolder:
 
 def _made_of(folder: RunFolder, done: Results, every_point: bool) -> str:
     """A digest of the tables, the study and the code that pages are made of."""
-    code = own_code(), own_code(tuple(sorted(BESIDE - {*MADE_BY}))), version("matplotlib")
+    code = own_code(), own_code(tuple(sorted(BESIDE_A_PIECE - {*MADE_BY}))), version("matplotlib")
     account = folder.account()
     told = [account.get("table"), account.get("runs"), folder.identity.text, every_point, done.counts, code]
     return hashlib.sha256(repr(told).encode()).hexdigest()

@@ -65,7 +65,7 @@ def _kept(orbit: Orbit | None, _place: int) -> Orbit | None:
     return orbit
 
 
-class InSI(dict[str, float]):
+class ResultsInSI(dict[str, float]):
     """Results in SI units by column; each is an attribute, too, without the unit: ``si.velocity_amplitude``."""
 
     def __getattr__(self, name: str) -> float:
@@ -85,7 +85,7 @@ class InSI(dict[str, float]):
         told = (
             f"{SI[name].column} {value:.6g} {units[name]}" for name, value in self.items() if value == value
         )
-        return f"InSI({', '.join(told)})"
+        return f"ResultsInSI({', '.join(told)})"
 
 
 @dataclass(frozen=True, repr=False)
@@ -174,7 +174,7 @@ class SteadyState:
         Model that produced the number, in words such as "events"; with ``auto`` also why it was chosen.
     seconds : float
         Time spent in kernels [s].
-    si : InSI
+    si : ResultsInSI
         Columns in SI units by name, if the scene is given in SI units.
     motion : OrbitOf or MotionOnSprings, optional
         Orbit, computed when first used; ``orbit`` and ``harmonics`` read it.
@@ -224,7 +224,7 @@ class SteadyState:
     presliding_ratio: float = NAN
     model: str = ""
     seconds: float = NAN
-    si: InSI = field(default_factory=InSI)
+    si: ResultsInSI = field(default_factory=ResultsInSI)
     drift_speed: float = NAN
     drift_speed_error: float = NAN
     motion: OrbitOf | MotionOnSprings | None = field(default=None, compare=False)

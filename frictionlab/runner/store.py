@@ -32,7 +32,7 @@ from frictionlab.study import registry
 from frictionlab.study.study import Study
 
 SOLVERS = ("numpy", "numba", "llvmlite", "scipy")
-BESIDE = {"analysis", "bench", "charts", "cli", "report", "study", "testing"}
+BESIDE_A_PIECE = {"analysis", "bench", "charts", "cli", "report", "study", "testing"}
 """Rooms of frictionlab that no number of a point hangs on: what a study means is in its scenes and laws."""
 
 
@@ -49,7 +49,7 @@ def solving_code() -> str:
 
 
 @cache
-def own_code(beside: Collection[str] = tuple(sorted(BESIDE))) -> str:
+def own_code(beside: Collection[str] = tuple(sorted(BESIDE_A_PIECE))) -> str:
     """Return the SHA-256 of the source files of frictionlab that numbers hang on, those of rooms beside left out."""
     home, digest = Path(frictionlab.__file__).parent, hashlib.sha256()
     for file in sorted(home.rglob("*.py")):

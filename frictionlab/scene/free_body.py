@@ -23,7 +23,7 @@ from frictionlab.scene.units import Units
 from frictionlab.values.quantities import Floats
 
 COUNT = 3
-RATIOS = {True: 128.0, False: 256.0}
+_RATIOS = {True: 128.0, False: 256.0}
 """Frequency of the vibration over that of the stiffest spring, where friction remembers and where not: bristles come
 to rest on soft springs over hundreds of periods. Each spring has half the stiffness of the one before."""
 NEW_EVENT = 0.1
@@ -33,13 +33,13 @@ NEW_EVENT = 0.1
 def springs_for(scene: Scene, remembers: bool) -> list[Units]:
     """Return units in which ever softer springs for a scene whose body is free have stiffness 1, as its mass."""
     slowest = scene.frequency / scene.periods
-    roots = [slowest / (RATIOS[remembers] * math.sqrt(2.0) ** j) for j in range(COUNT)]
+    roots = [slowest / (_RATIOS[remembers] * math.sqrt(2.0) ** j) for j in range(COUNT)]
     return [Units(1.0, 1.0 / root, root**2) for root in roots]
 
 
 def by_new_events(remembers: bool) -> float:
     """Return the share of friction by which events between the softest spring and none may change a mean."""
-    return float(NEW_EVENT * (RATIOS[remembers] ** 2 * 2.0 ** (COUNT - 1)) ** -1.5)
+    return float(NEW_EVENT * (_RATIOS[remembers] ** 2 * 2.0 ** (COUNT - 1)) ** -1.5)
 
 
 def held(scenes: Scenes, units: Units) -> Scenes:
@@ -62,19 +62,21 @@ def _weights(count: int) -> Floats:
     return np.array([np.prod([other / (other - one) for other in k if other != one]) for one in k])
 
 
-class Limit(NamedTuple):
+class LimitOfSprings(NamedTuple):
     """Value for no spring, and its distance from what all springs but the stiffest give."""
 
     value: Floats
     change: Floats
 
 
-WEIGHTS = _weights(COUNT)
+WEIGHTS_OF_SPRINGS = _weights(COUNT)
 _FEWER = np.concatenate([[0.0], _weights(COUNT - 1)])
 
 
-def without_spring(values: Floats) -> Limit:
+def without_spring(values: Floats) -> LimitOfSprings:
     """Return the limit of values [springs, ...] found with each spring; of equal ones that value."""
     same = values.min(axis=0) == values.max(axis=0)
-    limit, fewer = (np.where(same, values[-1], np.tensordot(w, values, 1)) for w in (WEIGHTS, _FEWER))
-    return Limit(limit, np.abs(limit - fewer))
+    limit, fewer = (
+        np.where(same, values[-1], np.tensordot(w, values, 1)) for w in (WEIGHTS_OF_SPRINGS, _FEWER)
+    )
+    return LimitOfSprings(limit, np.abs(limit - fewer))

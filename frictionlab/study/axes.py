@@ -89,13 +89,13 @@ ENDS = "start", "stop"
 """Keys of its ends."""
 WITHIN = "within"
 """Key of a range out of which belt speeds are chosen as a run goes."""
-FINEST = 10.0
+FINEST_WITHIN = 10.0
 """Tolerances within which straight lines may be asked to be: a point's own error is as large as that."""
 MOST_CHOSEN = 100_000
 """Points of a table whose belt speeds are chosen as a run goes."""
 FIRST_SPEEDS = 17
 """Belt speeds, evenly spaced, from which others are chosen."""
-CLOSEST = 2.0**-20
+CLOSEST_SPEEDS = 2.0**-20
 """Share of a range within which no belt speed is chosen beside another: there a jump of friction is left."""
 
 

@@ -47,12 +47,12 @@ _COMPARABLE = [
 ]
 WhereValue = str | float | list[str | float] | dict[str, float]
 """Wanted value of an input: a value, one of several, or a number within a range, ``{"from": 5, "to": 20}``."""
-COMPARISONS = "equals", "below", "above"
+CLAIMED = "equals", "below", "above"
 _GO_WITH = {
     "status": (),
     "max_difference": ("below",),
     "shape": ("measure",),
-    "column": (*COMPARISONS, "within", "minus", "over"),
+    "column": (*CLAIMED, "within", "minus", "over"),
 }
 """Four kinds of claim, each with the keys that go with it."""
 
@@ -101,7 +101,7 @@ class Expectation(Record):
 
     @model_validator(mode="after")
     def _one_claim(self) -> Self:
-        kind, said = self.kind, [key for key in COMPARISONS if getattr(self, key) is not None]
+        kind, said = self.kind, [key for key in CLAIMED if getattr(self, key) is not None]
         keys = [key for key, value in self if value is not None and key not in ("where", "because", kind)]
         wrong = [
             f"{key}: {'goes with shape' if key == 'measure' else f'does not go with {kind}'}"
@@ -162,7 +162,7 @@ def of_table(given: Expectation, path: KeyPath, table: Table, notes: Notes) -> E
         notes.one_of(label, (*path, "max_difference", at), table.texts["method"])
     if given.max_difference and len({*given.max_difference}) < 2:
         notes.add((*path, "max_difference", 1), "is the same method: give two different ones")
-    for key in (*COMPARISONS, "within"):
+    for key in (*CLAIMED, "within"):
         if isinstance(value := getattr(given, key), str):
             found = in_si(given.column, given.column, value) if given.column in columns.SI else value
             read = notes.positive if key == "within" else notes.number

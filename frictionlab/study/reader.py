@@ -16,7 +16,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import SPRING
 from frictionlab.study import registry
 from frictionlab.study.axes import (
-    FINEST,
+    FINEST_WITHIN,
     FRICTION,
     LINKED,
     MOST_CHOSEN,
@@ -88,9 +88,9 @@ def note_impossible_points(grid: StudyGrid, keys: StudyKeys, notes: Notes) -> No
 
 def _note_choice(grid: StudyGrid, along: SpeedRange, tolerance: float, notes: Notes) -> None:
     path: KeyPath = ("sweep", next(path for path, each in grid.ranges.items() if each is along), WITHIN)
-    about, least = grid_size(grid.foreseen()), FINEST * tolerance
+    about, least = grid_size(grid.foreseen()), FINEST_WITHIN * tolerance
     if along.within < least:
-        said = f"must be >= {number_text(float(f'{least:.6g}'))}, {FINEST:g} times tolerance"
+        said = f"must be >= {number_text(float(f'{least:.6g}'))}, {FINEST_WITHIN:g} times tolerance"
         notes.add(path, f"{said}, got {number_text(along.within)}")
     elif about > MOST_CHOSEN:
         what = f"belt speeds are chosen for {MOST_CHOSEN} at most: give num"

@@ -121,7 +121,7 @@ ALWAYS: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.group == "
 """Those of every table, whatever is asked for."""
 
 
-class InSI(NamedTuple):
+class ColumnInSI(NamedTuple):
     """A result column in SI units: the nondimensional column, the scale that multiplies it, and its meaning."""
 
     column: str
@@ -129,8 +129,8 @@ class InSI(NamedTuple):
     meaning: str
 
 
-SI: dict[str, InSI] = {
-    f"{each.name}_{_UNITS[each.scale][0]}": InSI(
+SI: dict[str, ColumnInSI] = {
+    f"{each.name}_{_UNITS[each.scale][0]}": ColumnInSI(
         each.name,
         each.scale,
         f"{each.in_si or (each.name if each.scale == 'velocity' else each.meaning)} [{_UNITS[each.scale][1]}]",

@@ -24,7 +24,7 @@ from frictionlab.methods.exact.oscillator import (
 )
 from frictionlab.values.quantities import EPSILON
 
-TINY = 1e-300
+_TINY = 1e-300
 STICK = 0.0
 MOST_CREEPING = 1000
 """Most steps of rounding size in a leg; more give NaN: the motion is smaller than the rounding of its position."""
@@ -122,8 +122,8 @@ def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> f
     height = max(_cubic(base, g, g1, g2, bound), 0.0)
     if height == 0.0:
         return base
-    slope = max(-(g1 + base * (g2 - 0.5 * bound * base)), TINY)
-    bend = max(bound * base - g2, TINY)
+    slope = max(-(g1 + base * (g2 - 0.5 * bound * base)), _TINY)
+    bend = max(bound * base - g2, _TINY)
     # Each of the three terms alone would bring the cubic to zero there: all together do so earlier.
     r = min(height / slope, math.sqrt(2.0 * height / bend), (6.0 * height / bound) ** (1.0 / 3.0))
     below = height
@@ -152,7 +152,7 @@ def _slip_cubic(body: Any, sign: float, y: float, z: float, response: Any) -> tu
     third = -2.0 * b * free - z
     fourth = -2.0 * b * third - free
     bend = sign * (third + load_rate - 2.0 * b * forced - speed)
-    bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, TINY)
+    bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, _TINY)
     return sign * (free + forced), bend, bound
 
 
@@ -221,7 +221,7 @@ def stick_leg(body: Any, tau: float, x: float, left: float) -> LegEnd:
     """Follow rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
     carried = 2.0 * body.damping * body.belt_speed
     noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + abs(carried))
-    bound = max(largest_push(body), TINY)
+    bound = max(largest_push(body), _TINY)
     r, event, side, net, crept, steps = 0.0, 0.0, 1.0, 0.0, 0, 0
     lost = False
     while True:

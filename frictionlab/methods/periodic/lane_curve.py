@@ -32,7 +32,7 @@ from frictionlab.scene.body import BodyNumbers
 MOST_LANE_MAPS = 12
 FINER_IN_LANES = 4.0
 """Ratio of accuracies of the first map and the last, whose whole accuracy is in the error stated."""
-BESIDE = 3
+_BESIDE = 3
 """Known states on either side that a guess is interpolated from."""
 MAP_NOISE = 0.3
 """Share of a map's accuracy below which a residual says nothing of the state."""
@@ -98,7 +98,7 @@ def _middles(fate: Any, places: Any) -> int:
 def _beside(fate: Any, i: int, places: Any) -> int:
     """Write the nearest points on either side whose orbits are closed, the nearest first; returns how many."""
     count, below, above = 0, i - 1, i + 1
-    for side in range(2 * BESIDE):
+    for side in range(2 * _BESIDE):
         if side % 2 == 0:
             while below >= 0 and fate[below] != CLOSED_ORBIT:
                 below -= 1
@@ -134,7 +134,7 @@ def _interpolate(curve: LaneCurve, places: Any, count: int, i: int, z: Any) -> N
 @inner
 def _guess(law: Any, body: BodyNumbers, curve: LaneCurve, i: int, z: Any) -> None:
     """Write a guess of the state at i and of its inverse."""
-    places = np.empty(2 * BESIDE, np.int64)
+    places = np.empty(2 * _BESIDE, np.int64)
     count = _beside(curve.fate, i, places)
     if count == 0:
         zero = body.reference_sine - body.reference_sine

@@ -25,7 +25,7 @@ WITHOUT_INERTIA = 3e-4
 """Share of that slip below which inertia has no effect on a change to another slip as slow."""
 HALVES = 4.3
 """Argument at which asinh is half of its linear term."""
-CLOSE = 0.1
+_CLOSE = 0.1
 """Largest error of the logarithm of such a slip; within the accuracy all slips look the same."""
 SLOWEST = -150.0
 """Decimal logarithm of the slowest slip that differs from none: kernels take squares of it."""
@@ -172,7 +172,7 @@ def _velocity_error(work: Work, error: Any) -> float:
     if _weightless(work):
         return max(ends, 0.1 * length(end) / (BELOW * WITHOUT_INERTIA))
     # a slip that slows down to creep loses its speed within the step, and the error of that speed counts
-    return max(ends, most, work.creep[SLOW] / (BELOW * CLOSE) * length(lengthens))
+    return max(ends, most, work.creep[SLOW] / (BELOW * _CLOSE) * length(lengthens))
 
 
 to_step_variable = by_scalars(lambda law, work, w: w, lambda law, work, w: _step_variable(work, w))

@@ -28,7 +28,7 @@ MOST_HALVINGS = 24
 MOST_PARTS = 10_000
 """Largest number of parts of one step that are tried; a contact that needs more is too stiff for the
 method."""
-CLOSE = 1e-10
+_CLOSE = 1e-10
 """Relative size of the last Newton step; convergence is quadratic, so the remaining error is negligible."""
 NUDGE = 1e-6
 """Relative step of the difference quotients."""
@@ -145,7 +145,7 @@ def solve_stage(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Stage
             part = 0.5 * part
             ahead = gap_of(rates, problem, stage, v + part * change.v, z + part * change.z)
         v, z, at, missed = v + part * change.v, z + part * change.z, ahead, size_of(stage, ahead)
-        if part * size_of(stage, change) <= CLOSE or missed == 0.0:
+        if part * size_of(stage, change) <= _CLOSE or missed == 0.0:
             return StageSolution(v, z, True)
     return StageSolution(v, z, False)
 

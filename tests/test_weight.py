@@ -16,7 +16,7 @@ LIMITS = {
     "laws": 686,
     "methods": 8034,
     "motion": 4596,
-    "report": 1730,
+    "report": 1623,
     "runner": 4073,
     "scene": 1842,
     "study": 2649,
@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 841,
     "tools": 19,
     "values": 1421,
-    "tests": 26086,
+    "tests": 26081,
     "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

@@ -45,21 +45,27 @@ _SHAKEN = (
 
 
 class Letters(NamedTuple):
-    """Letters of the inputs of a study that are not zero, by their keys without units, and those of its motion."""
+    """Letters along one axis: of the motion, and of those inputs that are not zero, by their keys without units."""
 
     known: dict[str, Markup]
+    axis: int
 
     @classmethod
-    def of(cls, study: Study) -> Letters:
+    def of(cls, study: Study, axis: int) -> Letters:
         """Read the letters of a study."""
-        kept = "scene." if study.scene.dimensional is None else "scene.dimensional."
+        kept, moving = (
+            ("scene.", "xẋẍτΩ") if study.scene.dimensional is None else ("scene.dimensional.", "XẊẌtω")
+        )
         given = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
         fixed = [name for name, value in given.items() if value and value != SINE.shape]
         names = [name for name in dict.fromkeys([*fixed, *study.sweep]) if name.startswith(kept)]
         known = {without_unit(name.removeprefix(kept)): symbol_html(name) for name in names}
         known |= {key: Markup("<i>w</i>") for key in known if key.endswith(".waveform")}
-        shared = ("<i>τ</i>", "<i>Ω</i>") if kept == "scene." else ("<i>t</i>", "<i>ω</i>")
-        return cls(known | dict(zip(("t", "frequency"), map(Markup, shared), strict=True)))
+        x, v, a, t, frequency = (Markup("<i>{}</i>").format(letter) for letter in moving)
+        of_axis = {
+            name: letter + Markup(f"<sub>{axis}</sub>") for name, letter in zip("xva", (x, v, a), strict=True)
+        }
+        return cls(known | of_axis | {"t": t, "frequency": frequency}, axis)
 
     def term(self, *forms: str, part: str = "", **others: Markup) -> Markup:
         """Write the first of these forms whose letters are all known; nothing where none is."""
@@ -69,77 +75,65 @@ class Letters(NamedTuple):
                 return Markup(re.sub("{(.+?)}", lambda key: known[key[1]], form))
         return Markup("")
 
-    def shaken(self, part: str, axis: int = 1) -> Markup:
-        """What a part of the scene adds along an axis: its size times its waveform, turned by its direction."""
+    def shaken(self, part: str) -> Markup:
+        """What a part of the scene adds along the axis: its size times its waveform, turned by its direction."""
         pace = self.term("{@frequency_ratio} {frequency}", "{frequency}", part=part)
         angle = self.term("{pace} {t} + {@phase}", "{pace} {t}", part=part, pace=pace)
         wave = self.term("{@waveform}({angle})", "sin({angle})", part=part, angle=angle)
         terms = [self.term(*_SHAKEN, part=part, wave=wave, pace=pace), self.term("{@offset}", part=part)]
         told = Markup(" + ").join(filter(None, terms))
         if f"{part}direction" not in self.known:
-            return told if axis == 1 else Markup("")
+            return told if self.axis == 1 or part.startswith("transverse") else Markup("")
         told = Markup("({})").format(told) if all(terms) else told
-        return self.term(f"{{told}} {('cos', 'sin')[axis - 1]} {{@direction}}", part=part, told=told)
+        return self.term(
+            "{told} cos {@direction}" if self.axis == 1 else "{told} sin {@direction}", part=part, told=told
+        )
 
 
 def equations(study: Study) -> list[Markup]:
     """Write what is solved: motion along the belt and across it, slip, varying load; of a prescribed slip that."""
-    letters, degrees = Letters.of(study), study.scene.degrees_of_freedom
-    if not degrees:
-        lines = [_slip(letters, axis) for axis in ((1, 2) if study.scene.planar else (1,))]
-    else:
-        moving = [_moving(study, axis) for axis in range(1, degrees + 1)]
-        lines = [_motion(study, letters, *each) for each in enumerate(moving, 1)]
-        lines += [
-            Markup(", &ensp; ").join(_slip(letters, axis, each["v"]) for axis, each in enumerate(moving, 1))
-        ]
+    along, across = (Letters.of(study, axis) for axis in (1, 2))
+    slips = [_slip(study, along)]
+    if study.scene.planar or across.shaken("slip."):
+        slips.append(_slip(study, across))
+    moving = (along, across)[: study.scene.degrees_of_freedom]
+    lines = [
+        *(_motion(study, each) for each in moving),
+        *([Markup(", &ensp; ").join(slips)] if moving else slips),
+    ]
     if study.scene.normal_load_variation:
-        varying = letters.shaken("normal_load_variation.")
-        lines.append(
-            letters.term(
-                *(f"<i>N</i>({{t}}) = {each} (1 + {{varying}})" for each in _NORMAL), varying=varying
-            )
-        )
+        varying = along.shaken("normal_load_variation.")
+        forms = (f"<i>N</i>({{t}}) = {load} (1 + {{varying}})" for load in _NORMAL)
+        lines.append(along.term(*forms, varying=varying))
     return lines
 
 
-def _moving(study: Study, axis: int) -> dict[str, Markup]:
-    """Letters of place, velocity and acceleration."""
-    letters = "x\u1e8b\u1e8d" if study.scene.dimensional is None else "X\u1e8a\u1e8c"
-    return {
-        name: Markup(f"<i>{letter}</i><sub>{axis}</sub>") for name, letter in zip("xva", letters, strict=True)
-    }
-
-
-def _motion(study: Study, letters: Letters, axis: int, moving: dict[str, Markup]) -> Markup:
+def _motion(study: Study, letters: Letters) -> Markup:
     """Inertia, dashpot, spring and friction against the load."""
-    part, scene, bent = (
-        "" if axis == 1 else "transverse.",
-        study.scene,
-        {"stretch": moving["x"], "rate": moving["v"]},
-    )
-    beside = []
-    if axis == 1:
-        bent = {"stretch": letters.term(*_STRETCH, **moving), "rate": letters.term(*_RATE, **moving)}
-        beside = [letters.term(each, **moving) for each in _BESIDE]
-    held = [] if axis == 1 and scene.is_free else _SPRING
-    body = [letters.term(*each, part=part, **moving, **bent) for each in (_INERTIA, _DASHPOT, held)]
-    if axis == 1 and "receptance" in scene.body_terms:
-        body = [Markup("<i>H</i><sup>\N{MINUS SIGN}1</sup> {}").format(moving["x"])]
+    scene, on_belt = study.scene, letters.axis == 1
+    part, load = ("", "drive.") if on_belt else ("transverse.", "transverse.load.")
+    stretch, rate = (letters.term(*(forms if on_belt else forms[1:])) for forms in (_STRETCH, _RATE))
+    springs = () if on_belt and scene.is_free else _SPRING
+    body = [
+        letters.term(*each, part=part, stretch=stretch, rate=rate) for each in (_INERTIA, _DASHPOT, springs)
+    ]
+    if on_belt and "receptance" in scene.body_terms:
+        body = [letters.term("<i>H</i><sup>\N{MINUS SIGN}1</sup> {x}")]
+    beside = [letters.term(each) for each in _BESIDE if on_belt]
     normal = ["<i>N</i>({t})"] if scene.normal_load_variation else _NORMAL
-    friction = letters.term(*(f"{each} <i>T</i><sub>{axis}</sub>" for each in normal))
-    loads = [letters.shaken("drive.", axis), letters.shaken("transverse.load.") if axis == 2 else ""]
+    friction = letters.term(*(f"{each} <i>T</i><sub>{letters.axis}</sub>" for each in normal))
+    loads = [*map(letters.shaken, dict.fromkeys(["drive.", load]))]
     left, right = (Markup(" + ").join(filter(None, terms)) for terms in ([*body, *beside, friction], loads))
     return Markup("{} = {}").format(left, right or "0")
 
 
-def _slip(letters: Letters, axis: int, velocity: Markup | None = None) -> Markup:
+def _slip(study: Study, letters: Letters) -> Markup:
     """Slip velocity: that of the mass, or that which is prescribed, less that of the belt."""
-    across = letters.shaken("transverse_slip.") if axis == 2 else ""
-    first = velocity or letters.shaken("slip.", axis) or across
-    less = [letters.term("{belt_speed}") if axis == 1 else "", letters.shaken("belt_vibration.", axis)]
+    across = letters.shaken("transverse_slip.") if letters.axis == 2 else ""
+    first = letters.term("{v}") if study.scene.degrees_of_freedom else letters.shaken("slip.") or across
+    less = [letters.term("{belt_speed}") if letters.axis == 1 else "", letters.shaken("belt_vibration.")]
     told = Markup(" \N{MINUS SIGN} ").join([first, *filter(None, less)]).strip()
-    return Markup("<i>v</i><sub>{}</sub> = {}").format(axis, told or "0")
+    return Markup("<i>v</i><sub>{}</sub> = {}").format(letters.axis, told or "0")
 
 
 def letters_sentence(study: Study) -> str:

@@ -19,7 +19,7 @@ import pandas as pd
 
 from frictionlab import __version__
 from frictionlab.charts.curves import CurveData, Family, family_of
-from frictionlab.report.question import scene_sentences
+from frictionlab.report.question import scene_told
 from frictionlab.report.tables import html
 from frictionlab.runner.curve_loads import scene_of
 from frictionlab.runner.files import FolderError
@@ -209,7 +209,7 @@ def explorer(saved: Results | None = None) -> str:
         "generator": f"frictionlab {__version__}",
         "title": TITLE,
         "style": _part("page.css"),
-        "scene": OWN_SCENE if saved is None else escape(scene_sentences(saved.study)),
+        "scene": OWN_SCENE if saved is None else str(scene_told(saved.study)),
         "run": ""
         if saved is None
         else _filled("run.html", {"title": escape(saved.title), "sentence": _sentence(saved)}),

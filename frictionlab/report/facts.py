@@ -84,6 +84,10 @@ class Facts:
         """What is swept besides belt speed."""
         return swept_inputs(self.table)
 
+    def where(self, row: pd.Series) -> dict[str, Any]:
+        """Where a point is: its belt speed, and what else is swept."""
+        return {name: row[name] for name in (self.speed, *self.swept)}
+
     @cached_property
     def figures(self) -> FigureData:
         """What its figures of the table are drawn of."""

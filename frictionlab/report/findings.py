@@ -9,7 +9,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.methods.words import model_in_sentences, why_unique_in_words
-from frictionlab.report.facts import Facts, whose
+from frictionlab.report.facts import CurveRows, Facts, whose
 from frictionlab.report.tables import (
     Cell,
     Grid,
@@ -26,7 +26,7 @@ from frictionlab.runner.expectations import Verdict
 from frictionlab.runner.pairs import Difference, law_pairs
 from frictionlab.runner.summary import alike, each_once, mean_span, pattern, statuses
 from frictionlab.runner.words import counted
-from frictionlab.values.columns import IN_SI_UNITS, RESULTS, SI, by_plain_names
+from frictionlab.values.columns import ALSO_IN_SI, IN_SI_UNITS, RESULTS, SI, by_plain_names
 from frictionlab.values.printable import MOST_DIGITS, with_error
 
 FEW_ROWS = 4
@@ -44,6 +44,19 @@ VERDICTS = {
 }
 
 
+SHAPE_HEADS = {
+    "shape": "shape",
+    "shape_area": "area between curve and chord",
+    "reversal_end": "end of reversal",
+    "reduction": "largest reduction",
+    "shape_half": "share at half the range",
+    "shape_initial": "curvature at rest",
+    "shape_by_initial": "shape at rest",
+    "model_distance": "distance to the full curve",
+    "not_unique_from": "not unique from",
+    "not_unique_to": "not unique to",
+}
+"""Columns of ``curves.csv`` that are shown, and their heads."""
 _OF_CURVES = "status", "mean_friction", "mean_friction_N", "error", "error_N", "error_kind"
 
 
@@ -99,6 +112,50 @@ def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:
     return grid("Onsets along rising belt speed", head, rows, "onsets", "onsets.csv", len(onsets))
 
 
+def shape_grid(run: Facts) -> Grid | None:
+    """The measures of curves.csv, each with its error, the verdict first; None where no curve has a shape."""
+    table = run.saved.curves
+    own = (
+        [] if table is None else [name for name in SHAPE_HEADS if name in table and table[name].notna().any()]
+    )
+    if table is None or {*own} <= {"reversal_end", "reduction"}:
+        return None
+    curves, unit = run.curves_of(table), unit_html(run.speed)
+    rows = (
+        [*who, *(_measure(run, curve, row, name) for name in own)]
+        for who, curve in zip(whose(curves), curves, strict=True)
+        for row in [curve.rows.iloc[0]]
+    )
+    heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name in ALSO_IN_SI else "") for name in own]
+    caption = "Shape of each curve against its chord, the line from rest to the end of reversal"
+    found = grid(caption, ["law", "method", "curve", *heads], rows, "curves", "curves.csv", len(table))
+    missing = [
+        f"A measure is missing of {counted(count, 'curve')}: {why}." for count, why in why_missing(table)
+    ]
+    return found._replace(below=" ".join(filter(None, [found.below, *missing])))
+
+
+def _measure(run: Facts, curve: CurveRows, row: pd.Series, name: str) -> Cell:
+    if isinstance(row[name], str):
+        return row[name]
+    if pd.isna(row[name]):
+        return ""
+    if name in ALSO_IN_SI:
+        return with_error(*run.speed_in_given_units(curve, row, name))
+    return (
+        size(row[name])
+        if name == "model_distance"
+        else with_error(float(row[name]), row.get(f"{name}_error"))
+    )
+
+
+def why_missing(curves: pd.DataFrame) -> list[tuple[int, str]]:
+    """Why measures are missing: how many curves have each reason, and the reason, the commonest first."""
+    reasons = curves["reason"].dropna()
+    kinds = [kind for _, kind in reasons.groupby(reasons.map(pattern), sort=False)]
+    return [(len(kind), alike(kind)) for kind in sorted(kinds, key=len, reverse=True)]
+
+
 def pair_grids(run: Facts) -> list[Grid]:
     """Every two laws, and every two methods law by law: where their means differ most, and by how much."""
     caption = "{} in pairs: the largest difference of their mean friction at the same point"
@@ -138,7 +195,9 @@ def whole_grid(run: Facts) -> Grid | None:
             rows.append(
                 [quantity, *(_written(row, shown[name], shown.get(_error_of(name))) for row in points)]
             )
-    told = [Markup("{} by {}, {}").format(row["law"], row["method"], place_of(run, row)) for row in points]
+    told = [
+        Markup("{} by {}, {}").format(row["law"], row["method"], settings(run.where(row))) for row in points
+    ]
     return grid("Every number found", ["quantity", *told], rows)
 
 
@@ -154,11 +213,6 @@ def _written(row: pd.Series, name: str, of_error: str | None) -> str:
     if isinstance(value, str):
         return value
     return with_error(value, error, MOST_DIGITS if error is None or pd.isna(error) else MOST_OF_A_POINT)
-
-
-def place_of(run: Facts, row: pd.Series) -> Markup:
-    """Where a point is: its belt speed, and what else is swept."""
-    return settings({name: row[name] for name in (run.speed, *run.swept)})
 
 
 def models_grid(run: Facts) -> Grid:
@@ -245,7 +299,7 @@ def _trouble(run: Facts, status: str, rows: pd.DataFrame) -> list[Cell]:
 
 
 def _example(run: Facts, row: pd.Series) -> Markup:
-    place = place_of(run, row)
+    place = settings(run.where(row))
     if pd.isna(row["mean_low"]):
         return place
     low, high = number(row["mean_low"]), number(row["mean_high"])

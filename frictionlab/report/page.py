@@ -18,10 +18,11 @@ from markupsafe import Markup, escape
 
 from frictionlab import __version__
 from frictionlab.report import findings, question
-from frictionlab.report.answer import sentences
+from frictionlab.report import sentences as say
+from frictionlab.report.answer import paragraphs
 from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.report.facts import Facts
-from frictionlab.report.shapes import shape_grid
+from frictionlab.report.sentences import told
 from frictionlab.report.sources import entries_of, published
 from frictionlab.report.tables import Grid, grid, size
 from frictionlab.runner.folder import write_page
@@ -112,7 +113,7 @@ def _head(run: Facts) -> dict[str, Any]:
         shown = pictures(run)
     return {
         "heading": Markup("V<sub>lin</sub>").join(map(escape, run.saved.title.split("V_lin"))),
-        "sentences": sentences(run),
+        "sentences": paragraphs(run),
         "first": shown[:1],
         "pictures": shown[1:],
         "thinned": counted(rows, "point") if rows < run.saved.size else "",
@@ -130,8 +131,8 @@ def wall(seconds: float) -> str:
 def _asked(saved: Results) -> dict[str, Any]:
     study = saved.study
     return {
-        "scene_sentence": question.scene_sentences(study),
-        "units_sentence": question.units_sentence(study.scene),
+        "scene_sentence": question.scene_told(study),
+        "units_sentence": told(say.UNITS, study.scene),
         "source": study.source,
         "sketched": study.scene.degrees_of_freedom > 0,
         "pushed": study.scene.drive is not None,
@@ -153,7 +154,7 @@ def _found(run: Facts) -> dict[str, Any]:
     return {
         "curves": findings.curves_grid(run),
         "whole": findings.whole_grid(run),
-        "shape": shape_grid(run),
+        "shape": findings.shape_grid(run),
         "pairs": findings.pair_grids(run),
         "onsets": None if onsets is None else findings.onset_grid(run, onsets),
         "verdicts": findings.verdicts_grid(verdicts),

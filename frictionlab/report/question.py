@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup
 
+from frictionlab.report import sentences as say
+from frictionlab.report.sentences import told
 from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, html, number, symbol_html
 from frictionlab.runner.words import in_words
-from frictionlab.scene.scene import Scene
-from frictionlab.scene.signals import Signal
+from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.units import own_length
 from frictionlab.scene.waveforms import SINE, as_fraction
 from frictionlab.study.axes import FRICTION, GridValue, SpeedRange
@@ -26,110 +27,40 @@ MOST_LISTED = 8
 CHOSEN = "chosen until straight lines between points are within {} of the mean"
 
 
-def scene_sentences(study: Study) -> str:
-    """What kind of scene it is, and what in it is no sine at the drive's frequency."""
-    return " ".join([_kind(study), *_shapes(study)])
-
-
-def _kind(study: Study) -> str:
-    scene, drive = study.scene, _Shaking(study, "drive")
-    if scene.degrees_of_freedom == 0:
-        return "Prescribed slip: a body whose slip over the belt is given, not computed."
-    if scene.undriven:
-        shaken = "which nothing shakes"
-    elif not scene.is_driven:
-        shaken = "without a load"
-    elif drive.is_turned:
-        shaken = f"shaken {drive.direction}"
-    else:
-        shaken = "shaken along it" if scene.signals().load[1] == Signal() else "shaken along and across it"
-    kind = (
-        "one degree of freedom" if scene.degrees_of_freedom == 1 else "two degrees of freedom, in the plane"
-    )
-    loose = ", that no spring holds along the belt" if scene.is_free else ""
-    return f"A body with {kind}{loose}, on a moving belt, {shaken}."
-
-
-def _shapes(study: Study) -> Iterator[str]:
-    """A sentence for every load, slip, belt vibration and normal load that is more than a sine along the belt."""
-    drive, load = _Shaking(study, "drive"), _Shaking(study, "transverse.load")
-    belt, normal = _Shaking(study, "belt_vibration"), _Shaking(study, "normal_load_variation")
-    if (drive.part and drive.part.offset) or (load.part and load.part.offset):
-        yield "A constant force pushes it."
-    if study.scene.is_driven and drive.is_told:
-        yield f"The load{'' if drive.is_turned else ' along x1'} varies {drive.wave}."
-    if load.part and load.is_told:
-        yield f"The load across the belt varies {load.wave}."
-    for slip, where in ((_Shaking(study, "slip"), "x1"), (_Shaking(study, "transverse_slip"), "x2")):
-        if slip.part and (slip.is_told or slip.is_turned):
-            along = slip.direction if slip.is_turned else f"along {where}"
-            yield f"The slip velocity {along} varies {slip.wave}."
-    if belt.part:
-        yield f"The belt vibrates {belt.direction}, its velocity {belt.wave}."
-    if normal.part:
-        contact = _CONTACTS["" if normal.is_swept("contact") else normal.part.contact]
-        yield f"The normal load varies {normal.wave}; {contact}."
-
-
-_CONTACTS = {
-    "per_load": "the stiffness of bristles follows it",
-    "constant": "the stiffness of bristles stays that of its mean",
-    "": "the stiffness of bristles follows it or stays that of its mean",
+_SHAKEN = {
+    "drive": ("The load", ""),
+    "transverse.load": ("The load", "across the belt"),
+    "slip": ("The slip velocity", ""),
+    "transverse_slip": ("The slip velocity", "across the belt"),
+    "belt_vibration": ("The velocity of the vibrating belt", ""),
+    "normal_load_variation": ("The normal load", " "),
 }
+"""Parts of a scene that change in time, and where they act if they have no direction."""
 
 
-class _Shaking(NamedTuple):
-    """A part of a scene that changes in time, by its path."""
-
-    study: Study
-    path: str
-
-    @property
-    def part(self) -> Any:
-        """None where the scene has none."""
-        found: Any = self.study.scene
-        for name in self.path.split("."):
-            found = found and getattr(found, name)
-        return found
-
-    def is_swept(self, name: str) -> bool:
-        return any(f"scene.{unit}{self.path}.{name}" in self.study.sweep for unit in ("", "dimensional."))
-
-    @property
-    def is_told(self) -> bool:
-        """Whether it has a waveform or a frequency of its own."""
-        own = getattr(self.part, "frequency_ratio", None) is not None
-        return own or self.part.waveform not in (None, SINE) or self.is_swept("waveform")
-
-    @property
-    def is_turned(self) -> bool:
-        return bool(getattr(self.part, "direction", None)) or self.is_swept("direction")
-
-    @property
-    def direction(self) -> str:
-        if self.is_swept("direction"):
-            return "in several directions"
-        at = self.part.direction
-        return f"at {number(at)}° to its motion" if at else "along its motion"
-
-    @property
-    def wave(self) -> str:
-        """As what it varies, and how often where that is not the drive's frequency."""
-        form, ratio = self.part.waveform or SINE, getattr(self.part, "frequency_ratio", None)
-        wave = "in several waveforms" if self.is_swept("waveform") else f"as {form.words}"
-        if self.is_swept("frequency_ratio"):
-            return f"{wave} at several frequencies"
-        return wave if ratio in (None, 1.0) else f"{wave} at {as_fraction(ratio)} times the drive's frequency"
+def scene_told(study: Study) -> Markup:
+    """Tell what kind of scene it is, what changes in time in it, and how."""
+    parts = [told(say.SCENE, study.scene), *(_shaken(study, path) for path in _SHAKEN)]
+    return Markup(" ").join(filter(None, parts))
 
 
-def units_sentence(scene: Scene) -> str:
-    """In which units its numbers are."""
-    if scene.dimensional is not None:
-        return "Given in SI units; a law's parameters are per unit normal load, but for those of the contact."
-    return (
-        "Nondimensional: lengths in L, times in 1/ω₁, forces in K₁L, speeds in ω₁L; friction coefficients are per "
-        "unit normal load."
-    )
+def _shaken(study: Study, path: str) -> Markup:
+    """Tell along what a part of the scene acts, as what it varies, how often if not as often as the drive."""
+    part: Any = study.scene
+    for name in path.split("."):
+        part = getattr(part, name, None)
+    if part is None:
+        return Markup("")
+    swept = (without_unit(name) for name in study.sweep if f"{path}." in name)
+    given = part.model_dump() | {name.rpartition(".")[2]: "swept" for name in swept}
+    (what, where), ratio = _SHAKEN[path], given.get("frequency_ratio")
+    turned = {None: "along the belt", 0.0: "along the belt", "swept": "in several directions"}
+    at = given.get("direction")
+    where = where or turned.get(at) or f"at {number(at)}° to the motion of the belt"
+    wave = "in several waveforms" if given["waveform"] == "swept" else f"as {(part.waveform or SINE).words}"
+    pace: dict[Any, str] = {None: "", 1.0: "", "swept": " at several frequencies"}
+    often = pace[ratio] if ratio in pace else f" at {as_fraction(ratio)} times the frequency of the drive"
+    return told(say.SHAKEN, given, load=f"{what} {where}".strip(), where=where, wave=wave, often=often)
 
 
 def scene_grid(study: Study) -> Grid:

@@ -157,12 +157,6 @@ def the(method: str) -> str:
     return f"the {method}" if " " in method else method
 
 
-def begun(sentence: Markup) -> Markup:
-    """A sentence that begins with words of ours, with a capital."""
-    ours = sentence.startswith(("the ", "at "))
-    return Markup(sentence[:1].upper() + sentence[1:]) if ours else sentence
-
-
 def joined_values(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
     return Markup(", ").join(map(escape, dict.fromkeys(words)))
@@ -175,10 +169,8 @@ def listed(parts: Sequence[Cell]) -> Markup:
     return Markup("{} and {}").format(Markup(between).join(most), last) if most else last
 
 
-def named(values: Mapping[str, Any], one_law: bool) -> Markup:
-    """A curve by its law, left out where there is only one, and the values that tell it apart."""
+def named(values: Mapping[str, Any]) -> Markup:
+    """A curve by its law, and the values that tell it apart."""
     told = [setting(name, value) for name, value in values.items() if name != "law" and not pd.isna(value)]
     law, where = escape(str(values["law"])), Markup(" and ").join(told)
-    if not where or one_law:
-        return where or law
-    return Markup("{} with {}").format(law, where)
+    return Markup("{} with {}").format(law, where) if where else law

@@ -1,0 +1,204 @@
+"""Sentences of a report: templates of three slots at most, each with a check of the table that it is true of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from markupsafe import Markup
+
+from frictionlab.runner.pairs import NOBODY, Ranking
+
+Sentences = Mapping[str, Callable[[Any], bool]]
+"""Templates, and when each is true."""
+MOST_STRETCHES = 4
+"""Stretches of the axis, on each of which another is highest, that are told one by one."""
+
+
+def told(sentences: Sentences, of: Any, **slots: Any) -> Markup:
+    """Write those that are true of something; an article that begins one has a capital."""
+    written = [Markup(words).format(**slots) for words, holds in sentences.items() if holds(of)]
+    return Markup(" ").join(Markup(f"T{each[1:]}") if each.startswith("the ") else each for each in written)
+
+
+# Rows of one curve, by the input of the axis
+
+
+def is_flat(rows: pd.DataFrame) -> bool:
+    """Check that no two means differ by more than the errors of the least and the greatest."""
+    low, high = rows["mean_friction"].argmin(), rows["mean_friction"].argmax()
+    mean, error = rows["mean_friction"].to_numpy(float), rows["error"].to_numpy(float)
+    return bool(mean[high] - mean[low] <= error[high] + error[low])
+
+
+def moves(rows: pd.DataFrame, way: float) -> bool:
+    """Check that every step along one axis goes this way, or is within errors."""
+    steps, slack = way * rows["mean_friction"].diff()[1:], rows["error"].rolling(2).sum()[1:]
+    return rows.index.is_unique and not is_flat(rows) and bool((steps >= -slack).all())
+
+
+def passes_zero(rows: pd.DataFrame) -> list[int]:
+    """Places of the first two neighbours, of those that are not zero within errors, on both sides of zero."""
+    clear = np.flatnonzero(rows["mean_friction"].abs() > rows["error"])
+    turns = np.flatnonzero(np.diff(np.sign(rows["mean_friction"].to_numpy(float)[clear])))
+    return [*map(int, clear[turns[0] : turns[0] + 2])] if len(turns) else []
+
+
+CURVE: Sentences = {
+    "The mean friction coefficient of {law} is {first}.": lambda rows: len(rows) == 1,
+    "Mean friction of {law} is the same within its errors at all {points}: {first}.": (
+        lambda rows: len(rows) > 1 and is_flat(rows)
+    ),
+    "Mean friction of {law} rises from {first} to {last}.": lambda rows: moves(rows, 1.0),
+    "Mean friction of {law} falls from {first} to {last}.": lambda rows: moves(rows, -1.0),
+    "Mean friction of {law} lies between {least} and {most}.": (
+        lambda rows: not (is_flat(rows) or moves(rows, 1.0) or moves(rows, -1.0))
+    ),
+    "It passes zero between {before} and {after}.": lambda rows: (
+        rows.index.is_unique and passes_zero(rows) != []
+    ),
+}
+
+# Laws, or what else is swept, ranked at every point
+
+
+def is_tied(ranking: Ranking) -> bool:
+    """Check that nowhere one is highest beyond errors."""
+    return bool((ranking.first == NOBODY).all())
+
+
+def is_won(ranking: Ranking) -> bool:
+    """Check for one that is highest everywhere."""
+    return not is_tied(ranking) and bool((ranking.first == ranking.first[0]).all())
+
+
+def changes(ranking: Ranking) -> bool:
+    """Check for several that are highest in turn, on few stretches of one axis."""
+    few = len(ranking.points.columns) == 1 and len(ranking.stretches) <= MOST_STRETCHES
+    return few and not (is_tied(ranking) or is_won(ranking))
+
+
+RANKED: Sentences = {
+    "Of {names} the highest agree within errors{everywhere}.": is_tied,
+    "Mean friction is highest for {winner}{everywhere}.": is_won,
+    "Mean friction is highest for {winners}.": changes,
+    "None is highest everywhere.": lambda ranking: (
+        not (is_tied(ranking) or is_won(ranking) or changes(ranking))
+    ),
+    "Where one has no number, the others are ranked.": lambda ranking: ranking.has_gaps,
+}
+
+# Two means at the point where they are furthest apart, or one with its error
+
+NEXT: Sentences = {"Its mean is {mean}, above {other}, the next, by {far}.": lambda value: value > 0.0}
+LAWS: Sentences = {"{one} is above {other} by up to {far}.": lambda value: value > 0.0}
+FURTHEST: Sentences = {"{one} is furthest from {other}, by {far}.": lambda value: value != 0.0}
+MODEL: Sentences = {
+    "{one} agrees with {other} within errors.": lambda apart: not apart.apart,
+    "{one} is too low by up to {far}.": lambda apart: apart.apart and apart.value < 0.0,
+    "{one} is too high by up to {far}.": lambda apart: apart.apart and apart.value > 0.0,
+}
+METHODS: Sentences = {
+    "{one} and {other} differ by up to {far}.": lambda apart: bool(apart.apart),
+    "{one} and {other} agree within errors: they differ by {far}.": lambda apart: not apart.apart,
+}
+OWN_ERROR: Sentences = {"{one} is off by up to {far}.": lambda row: row["error"] > 0.0}
+
+# Rows of a table: all, or those of one law, of one status, with large errors, with remarks
+
+
+def has(column: str, *values: str) -> Callable[[pd.DataFrame], bool]:
+    """Check for rows with one of these values in a column; with any where none is named."""
+
+    def holds(rows: pd.DataFrame) -> bool:
+        return column in rows and bool((rows[column].isin(values) if values else rows[column].notna()).any())
+
+    return holds
+
+
+NO_MEANS: Sentences = {
+    "No point has a number.": lambda rows: not has("status", "not_unique")(rows),
+    "No point has one mean friction.": has("status", "not_unique"),
+}
+SILENT: Sentences = {"{law} has no number.": lambda rows: not has("mean_friction")(rows)}
+UNANSWERED: Sentences = {
+    '<a href="#odd">not reached</a> at {points}, as the run was interrupted': lambda status: (
+        status == "killed"
+    ),
+    '<a href="#odd">{status}</a> at {points}': lambda status: status in ("refused", "failed", "not unique"),
+}
+SEEN: Sentences = {", with means from {low} to {high}": has("mean_low")}
+ROUGH: Sentences = {
+    '<a href="#curves">errors of up to {error}</a> above the tolerance of {tolerance} at {points}': has(
+        "error"
+    )
+}
+REMARKS: Sentences = {'<a href="#odd">a remark</a> at {points}': has("reason")}
+NEEDED: Sentences = {
+    '<span class="warn">Needs attention:</span> {trouble}.': bool,
+    '<span class="good">Nothing needs attention:</span> {points} ok.': lambda trouble: not trouble,
+}
+WELL: Sentences = {"Errors are at most {error}{besides}.": has("error")}
+FAILED: Sentences = {'<a href="#expected">{failed} of {expected} FAILED</a>': lambda passed: not all(passed)}
+HELD: Sentences = {
+    "What the study expects holds: {expected}.": lambda passed: all(passed) and len(passed) > 0
+}
+
+# Curves of one shape, by a reduced model or not, and the table of all curves
+BENDS: Sentences = {
+    '<a href="#shape">Concave</a> (above the chord): {who}.': has("shape", "concave"),
+    '<a href="#shape">Convex</a> (below the chord): {who}.': has("shape", "convex"),
+    '<a href="#shape">Mixed</a> (on both sides of the chord): {who}.': has("shape", "mixed"),
+    '<a href="#shape">Undecided</a> (errors leave it open): {who}.': has("shape", "undecided"),
+}
+OTHERWISE: Sentences = {"By {model} {shape}: {who}.": has("shape", "concave", "convex", "mixed")}
+AREA: Sentences = {
+    "The area between curve and chord is {area} of that under the chord.": has("shape", "concave", "convex")
+}
+NO_SHAPE: Sentences = {
+    "No curve has two belt speeds, so none has a shape.": lambda curves: curves.empty,
+    "Without a shape: {without} ({why}).": lambda curves: curves["shape"].isna().any(),
+}
+ENDS: Sentences = {
+    "Slip stops reversing at {end}.": lambda curves: not known_ends(curves).empty,
+    "Where slip stops reversing is left open by errors.": lambda curves: known_ends(curves).empty,
+}
+
+
+def known_ends(curves: pd.DataFrame) -> pd.DataFrame:
+    """Curves whose end of reversal is known to more than itself."""
+    return curves[curves["reversal_end_error"] <= curves["reversal_end"].abs()]
+
+
+# A scene, and what changes in time in it
+
+SCENE: Sentences = {
+    "Prescribed slip: a body whose slip over the belt is given, not computed.": lambda scene: (
+        not scene.degrees_of_freedom
+    ),
+    "A body with one degree of freedom, on a moving belt.": lambda scene: scene.degrees_of_freedom == 1,
+    "A body with two degrees of freedom, in the plane, on a moving belt.": lambda scene: (
+        scene.degrees_of_freedom == 2
+    ),
+    "No spring holds it along the belt.": lambda scene: scene.is_free,
+    "Nothing shakes it.": lambda scene: scene.undriven,
+}
+UNITS: Sentences = {
+    "Given in SI units; a law's parameters are per unit normal load, but for those of the contact.": (
+        lambda scene: scene.dimensional is not None
+    ),
+    "Nondimensional: lengths in L, times in 1/ω₁, forces in K₁L, speeds in ω₁L; friction coefficients are per unit "
+    "normal load.": lambda scene: scene.dimensional is None,
+}
+SIZES = "amplitude", "unbalance", "velocity_amplitude"
+SHAKEN: Sentences = {
+    "{load} varies {wave}{often}.": lambda given: any(given.get(size) for size in SIZES),
+    "A constant force pushes the body {where}.": lambda given: bool(given.get("offset")),
+    "The stiffness of bristles follows it.": lambda given: given.get("contact") == "per_load",
+    "The stiffness of bristles stays that of its mean.": lambda given: given.get("contact") == "constant",
+    "The stiffness of bristles follows it or stays that of its mean.": lambda given: (
+        given.get("contact") == "swept"
+    ),
+}

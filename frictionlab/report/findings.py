@@ -29,6 +29,8 @@ from frictionlab.runner.words import counted
 from frictionlab.values.columns import ALSO_IN_SI, IN_SI_UNITS, RESULTS, SI, by_plain_names
 from frictionlab.values.printable import MOST_DIGITS, with_error
 
+NOTHING = Grid("", [], [])
+"""A table that is not shown."""
 FEW_ROWS = 4
 """A table of so few rows is shown whole."""
 TOLD_ELSEWHERE = ("reason", "model")
@@ -94,8 +96,11 @@ def above_tolerance(run: Facts, rows: pd.DataFrame) -> pd.Series:
     return (rows["error"] > run.saved.study.tolerance) & (rows["error_kind"] != "statistical")
 
 
-def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:
-    """The onsets of onsets.csv, each with its error, curve by curve."""
+def onset_grid(run: Facts) -> Grid:
+    """The onsets of onsets.csv, each with its error, curve by curve; nothing where the study asks for none."""
+    onsets = run.saved.shown_onsets
+    if onsets is None:
+        return NOTHING
     curves = run.curves_of(onsets)
     rows = (
         [
@@ -112,14 +117,14 @@ def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:
     return grid("Onsets along rising belt speed", head, rows, "onsets", "onsets.csv", len(onsets))
 
 
-def shape_grid(run: Facts) -> Grid | None:
-    """The measures of curves.csv, each with its error, the verdict first; None where no curve has a shape."""
+def shape_grid(run: Facts) -> Grid:
+    """The measures of curves.csv, each with its error, the verdict first; nothing where no curve has a shape."""
     table = run.saved.curves
     own = (
         [] if table is None else [name for name in SHAPE_HEADS if name in table and table[name].notna().any()]
     )
     if table is None or {*own} <= {"reversal_end", "reduction"}:
-        return None
+        return NOTHING
     curves, unit = run.curves_of(table), unit_html(run.speed)
     rows = (
         [*who, *(_measure(run, curve, row, name) for name in own)]
@@ -172,14 +177,14 @@ def _pair(pair: Difference) -> list[Cell]:
     return [pair.law, f"{pair.one} \N{MINUS SIGN} {pair.other}", differs, settings(pair.where), counts]
 
 
-def whole_grid(run: Facts) -> Grid | None:
-    """Every number of a table of very few rows, a column for each point; None for a longer one.
+def whole_grid(run: Facts) -> Grid:
+    """Every number of a table of very few rows, a column for each point; nothing of a longer one.
 
     In SI units where the scene is given so; an error beside the number that it is of.
     """
     table = run.table
     if len(table) > FEW_ROWS:
-        return None
+        return NOTHING
     shown = by_plain_names(table)
     in_si = [name for name in SI if name in shown]
     names = [*RESULTS, *in_si]

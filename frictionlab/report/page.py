@@ -10,20 +10,17 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from frictionlab import __version__
 from frictionlab.report import findings, question
-from frictionlab.report import sentences as say
 from frictionlab.report.answer import paragraphs
 from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.report.facts import Facts
-from frictionlab.report.sentences import told
-from frictionlab.report.sources import entries_of, published
+from frictionlab.report.sources import bibtex, published
 from frictionlab.report.tables import Grid, grid, size
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.results import Results, folder_of
@@ -33,7 +30,6 @@ from frictionlab.values.printable import with_error
 
 if TYPE_CHECKING:
     from frictionlab.charts.figures import FigureData
-    from frictionlab.report.figures import Picture
 
 
 REPORT_TEMPLATES = Path(__file__).parent / "templates"
@@ -59,28 +55,27 @@ def write_report(saved: Results, drawn: FigureData | None = None) -> Path:
 
 def report(saved: Results, drawn: FigureData | None = None) -> str:
     """The page of a run."""
-    run = Facts(saved, drawn)
-    parts = _head(run) | _asked(saved) | _found(run) | _last(run)
-    return rendered("report.html", title=saved.title, headings=_headings(parts), **parts)
+    run, shown = Facts(saved, drawn), []
+    if saved.study.sweep:
+        from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
 
-
-def _headings(parts: dict[str, Any]) -> dict[str, str]:
-    """The sections of a page and their headings, those left out of which there is nothing to show."""
-    curved = bool(parts["shape"] and parts["shape"].rows)
-    sections = {
-        "shape": ("Which way the curves bend", curved),
-        "curves": (f"The {'curves' if curved else 'numbers'}, and how exact they are", True),
-        "pairs": ("Compared in pairs", any(each.rows for each in parts["pairs"])),
-        "onsets": ("Where stick begins and ends", parts["onsets"] and parts["onsets"].rows),
-        "figures": ("More figures", parts["pictures"]),
-        "odd": ("Points to look at", parts["odd"].rows),
-        "expected": ("What was expected", parts["expected"]),
-        "asked": ("The problem", True),
-        "methods": ("How the numbers were found", True),
-        "sources": ("Sources", True),
-        "again": ("How to run it again", True),
-    }
-    return {name: heading for name, (heading, shown) in sections.items() if shown}
+        shown = pictures(run)
+    tables = {"found": findings, "asked": question, "versions": _versions(saved), "runs": _runs(saved)}
+    again = {"commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN, "bibtex": bibtex([saved])}
+    return rendered(
+        "report.html",
+        title=saved.title,
+        saved=saved,
+        run=run,
+        pictures=shown,
+        paragraphs=paragraphs(run),
+        equations=equations(saved.study),
+        letters=letters_sentence(saved.study),
+        references=published(run.cited),
+        yaml=yaml_text(saved.study.resolved()),
+        **tables,
+        **again,
+    )
 
 
 def rendered(template: str, **values: Any) -> str:
@@ -90,34 +85,20 @@ def rendered(template: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
-    return Environment(
+    made = Environment(
         loader=FileSystemLoader(REPORT_TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.globals |= {"wall": wall, "size_of": size, "counted": counted}
+    return made
 
 
 @cache
 def _style() -> Markup:
     return Markup((REPORT_TEMPLATES / "style.css").read_text(encoding="utf-8").strip())
-
-
-def _head(run: Facts) -> dict[str, Any]:
-    rows = len(run.table)
-    shown: list[Picture] = []
-    if run.saved.study.sweep:
-        from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
-
-        shown = pictures(run)
-    return {
-        "heading": Markup("V<sub>lin</sub>").join(map(escape, run.saved.title.split("V_lin"))),
-        "sentences": paragraphs(run),
-        "first": shown[:1],
-        "pictures": shown[1:],
-        "thinned": counted(rows, "point") if rows < run.saved.size else "",
-    }
 
 
 def wall(seconds: float) -> str:
@@ -128,59 +109,6 @@ def wall(seconds: float) -> str:
     return f"{whole // 60} min {whole % 60} s"
 
 
-def _asked(saved: Results) -> dict[str, Any]:
-    study = saved.study
-    return {
-        "scene_sentence": question.scene_told(study),
-        "units_sentence": told(say.UNITS, study.scene),
-        "source": study.source,
-        "sketched": study.scene.degrees_of_freedom > 0,
-        "pushed": study.scene.drive is not None,
-        "equations": equations(study),
-        "letters_sentence": letters_sentence(study),
-        "scene": question.scene_grid(study),
-        "laws": question.laws_grid(study),
-        "methods": question.methods_grid(study),
-        "sweep": question.sweep_grid(study),
-        "tolerance": f"{study.tolerance:g}",
-        "keep": study.keep.orbit,
-        "yaml": yaml_text(study.resolved()),
-    }
-
-
-def _found(run: Facts) -> dict[str, Any]:
-    verdicts, onsets = run.saved.verdicts, run.saved.shown_onsets
-    passed = sum(verdict.passed for verdict in verdicts)
-    return {
-        "curves": findings.curves_grid(run),
-        "whole": findings.whole_grid(run),
-        "shape": findings.shape_grid(run),
-        "pairs": findings.pair_grids(run),
-        "onsets": None if onsets is None else findings.onset_grid(run, onsets),
-        "verdicts": findings.verdicts_grid(verdicts),
-        "passed": passed,
-        "fold": 0 < len(verdicts) == passed,
-        "expected": len(run.saved.study.expect),
-        "odd": findings.trouble_grid(run),
-        "unique": findings.uniqueness_grid(run),
-        "models": findings.models_grid(run),
-    }
-
-
-def _last(run: Facts) -> dict[str, Any]:
-    saved = run.saved
-    return {
-        "sources": run.cited,
-        "references": published(run.cited),
-        "bibtex": entries_of([(saved, run.cited)]),
-        "versions": _versions(saved),
-        "runs": _runs(saved.account["runs"]),
-        "wall": wall(saved.seconds),
-        "size": counted(saved.size, "point"),
-        "commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN,
-    }
-
-
 def _versions(saved: Results) -> Grid:
     account = saved.account
     own = {name: account.get(name) for name in ("frictionlab", "python", "platform")}
@@ -188,7 +116,7 @@ def _versions(saved: Results) -> Grid:
     return grid("Versions with which the numbers were made", ["what", "version"], rows)
 
 
-def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
+def _runs(saved: Results) -> Grid:
     rows = [
         [
             str(run.get("started", "")),
@@ -196,7 +124,7 @@ def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
             counted(int(run.get("computed", 0)), "point"),
             " ".join(f"--set {each}" for each in run.get("overrides", [])),
         ]
-        for run in runs
+        for run in saved.account["runs"]
     ]
     return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
 
@@ -210,38 +138,21 @@ def write_index(folder: Path, runs: Sequence[Results]) -> Path:
 
 def index(folder: Path, runs: Sequence[Results]) -> str:
     """The page of a folder of studies."""
-    entries = [_entry(folder, run) for run in runs]
+    from frictionlab.report.figures import address
+
     counts = sum((Counter(run.counts) for run in runs), Counter())
+    names = [folder_of(run).relative_to(folder).as_posix() for run in runs]
+    drawn = (address(folder / name / "figures" / "mean_friction") for name in names)
+    thumbnails = [each if len(each) <= LARGEST_THUMBNAIL else "" for each in drawn]
     return rendered(
         "index.html",
         title=f"Studies in {folder.absolute().name}",
         size=f"{len(runs)} studies, {counted(sum(counts.values()), 'point')}",
         counts=dict(counts.most_common()),
-        passed=sum(entry["passed"] for entry in entries),
-        failed=sum(entry["failed"] for entry in entries),
-        wall=wall(sum(run.seconds for run in runs)),
-        entries=entries,
+        verdicts=[verdict for run in runs for verdict in run.verdicts],
+        seconds=sum(run.seconds for run in runs),
+        entries=list(zip(runs, names, thumbnails, strict=True)),
     )
-
-
-def _entry(folder: Path, run: Results) -> dict[str, Any]:
-    """A study's row."""
-    from frictionlab.report.figures import address
-
-    own = folder_of(run)
-    name, passed = own.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
-    picture = address(own / "figures" / "mean_friction")
-    return {
-        "name": name,
-        "title": run.title,
-        "link": f"{quote(name)}/report.html",
-        "points": ", ".join(f"{count} {status}" for status, count in run.counts.items()),
-        "passed": passed,
-        "failed": len(run.verdicts) - passed,
-        "error": size(float(run.table["error"].max())),
-        "wall": wall(run.seconds),
-        "thumbnail": picture if len(picture) <= LARGEST_THUMBNAIL else "",
-    }
 
 
 FIT_CAPTION = (

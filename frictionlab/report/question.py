@@ -63,6 +63,11 @@ def _shaken(study: Study, path: str) -> Markup:
     return told(say.SHAKEN, given, load=f"{what} {where}".strip(), where=where, wave=wave, often=often)
 
 
+def units_told(study: Study) -> Markup:
+    """Tell in which units its numbers are."""
+    return told(say.UNITS, study.scene)
+
+
 def scene_grid(study: Study) -> Grid:
     """Every value of the scene, but for what swept ones run over."""
     rows = [

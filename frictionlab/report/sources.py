@@ -22,15 +22,10 @@ from frictionlab.study.parts import LawChoice
 
 def bibtex(runs: Sequence[Results]) -> str:
     """One entry for each publication, under a comment that says what used it; keys differ."""
-    return entries_of([(run, sources(run)) for run in runs])
-
-
-def entries_of(runs: Sequence[tuple[Results, Sequence[Cited]]]) -> str:
-    """The same of runs with what they cite."""
     users: dict[Publication, list[str]] = {}
-    for run, cited in runs:
+    for run in runs:
         users.setdefault(itself(str(run.account.get("frictionlab", ""))), ["the program"])
-        for each in cited:
+        for each in sources(run):
             for reference in each.references:
                 users.setdefault(reference, []).append(each.what)
     whom = [", ".join(dict.fromkeys(each)) for each in users.values()]

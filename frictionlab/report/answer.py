@@ -24,7 +24,7 @@ from frictionlab.report.tables import (
     the,
     unit_html,
 )
-from frictionlab.runner.pairs import NOBODY, Difference, Ranking, best_rows, ranking_of
+from frictionlab.runner.pairs import NOBODY, Ranking, best_rows, ranking_of
 from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import counted
 from frictionlab.values.columns import SHAPES
@@ -36,8 +36,6 @@ IN_SHORT = 3
 """Digits of a distance that is told in a sentence."""
 OF_A_PLACE = 4
 """Digits of a swept value in a sentence."""
-
-
 MOST_CURVES_NAMED = 6
 """Curves of which each is named; of more, what tells those of one shape from the others, else how many they are."""
 FEW = 3
@@ -56,15 +54,13 @@ def means_told(run: Facts) -> Markup:
     best = best_rows(run.table)
     if best.empty:
         return told(say.NO_MEANS, run.table)
-    found = [_model(run, pair) for pair in _models(run)]
-    if not found:
+    if not (found := [*_models(run)]):
         along = sweep_of(run.table).along or run.speed
         ranking = ranking_of(run.table, along)
         found = [_curve(run, best, along)] if ranking is None else [*_ranked(run, ranking, along)]
         found += [*_methods(run), *_own_errors(run)]
-    for law, rows in run.table.groupby("law", sort=False):
-        found.append(told(say.SILENT, rows, law=law))
-    return Markup(" ").join(filter(None, found))
+    silent = (told(say.SILENT, rows, law=law) for law, rows in run.table.groupby("law", sort=False))
+    return Markup(" ").join(filter(None, [*found, *silent]))
 
 
 def _far(value: float, error: float, where: Mapping[str, Any], digits: int = IN_SHORT) -> Markup:
@@ -73,19 +69,17 @@ def _far(value: float, error: float, where: Mapping[str, Any], digits: int = IN_
     return Markup("{} at {}").format(far, place) if place else escape(far)
 
 
-def _models(run: Facts) -> list[Difference]:
-    """Reduced models against the full answers beside them, each where it is furthest off if these are many."""
+def _models(run: Facts) -> Iterator[Markup]:
+    """Reduced models against the full answers beside them; each once, where it is furthest off, if these are many."""
     pairs = [pair for pair in run.method_pairs if pair.one in run.reduced and pair.other not in run.reduced]
     pairs.sort(key=lambda pair: -abs(pair.value))
-    if len(pairs) <= MOST_TOLD:
-        return pairs
-    return list({(pair.law, pair.one): pair for pair in reversed(pairs)}.values())[::-1][:MOST_TOLD]
-
-
-def _model(run: Facts, pair: Difference) -> Markup:
-    of = f" of {pair.law}" if run.table["law"].nunique() > 1 else ""
-    far = _far(abs(pair.value), pair.error, pair.where)
-    return told(say.MODEL, pair, one=f"{the(pair.one)}{of}", other=the(pair.other), far=far)
+    if len(pairs) > MOST_TOLD:
+        whose = [(pair.law, pair.one) for pair in pairs]
+        pairs = [pair for at, pair in enumerate(pairs) if whose.index(whose[at]) == at][:MOST_TOLD]
+    for pair in pairs:
+        of = f" of {pair.law}" if run.table["law"].nunique() > 1 else ""
+        far = _far(abs(pair.value), pair.error, pair.where)
+        yield told(say.MODEL, pair, one=f"{the(pair.one)}{of}", other=the(pair.other), far=far)
 
 
 def _methods(run: Facts) -> Iterator[Markup]:
@@ -110,7 +104,6 @@ def _curve(run: Facts, best: pd.DataFrame, along: str) -> Markup:
     """Between what the mean friction of one law lies, and where."""
     rows = best.sort_values(along, kind="stable").set_index(along, drop=False)
     names = dict.fromkeys([*swept_inputs(best), along if best[along].nunique() > 1 else run.speed])
-
     before, after = say.passes_zero(rows) or (0, 0)
     least, most = rows["mean_friction"].argmin(), rows["mean_friction"].argmax()
     places = {"first": 0, "last": -1, "least": least, "most": most, "before": before, "after": after}
@@ -127,31 +120,34 @@ def _ranked(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
     names, count = [*map(named, ranking.ranked)], len(ranking.first)
     speeds = list(ranking.points) == [along] and "belt_speed" in along
     everywhere = f" at all {counted(count, 'belt speed' if speeds else 'point')}" if count > 1 else ""
-    in_turn = {NOBODY: "none beyond errors"} | dict(enumerate(names))
-    winners = [
-        Markup("{} {}").format(in_turn[who], _stretch(ranking.points, *ends))
-        for who, *ends in ranking.stretches[: say.MOST_STRETCHES]
-    ]
-    slots = {
-        "names": listed(names) if len(names) <= MOST_TOLD else f"{len(names)} curves",
-        "winner": names[ranking.first[0]],
-        "winners": listed(winners),
-    }
+    who = {NOBODY: "none beyond errors"} | dict(enumerate(names))
+    stretches = ranking.stretches[: say.MOST_STRETCHES]
+    winners = listed(
+        [Markup("{} {}").format(who[at], _stretch(ranking.points, *ends)) for at, *ends in stretches]
+    )
+    everyone = listed(names) if len(names) <= MOST_TOLD else f"{len(names)} curves"
+    slots = {"names": everyone, "winner": who[ranking.first[0]], "winners": winners}
     yield told(say.RANKED, ranking, everywhere=everywhere, **slots)
-    if say.is_tied(ranking):
-        return
-    laws, in_short = [each["law"] for each in ranking.ranked], say.is_won(ranking) or say.changes(ranking)
+    if not say.is_tied(ranking):
+        yield from _apart(run, ranking, along)
+
+
+def _apart(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
+    """The highest and the lowest where they are furthest apart; of many any from the reference law, by settings."""
+    names, laws = [*map(named, ranking.ranked)], [each["law"] for each in ranking.ranked]
+    in_short = say.is_won(ranking) or say.changes(ranking)
     held = len({*laws}) > 2 and laws.count(run.figures.reference) == 1 and not in_short
     against = laws.index(run.figures.reference) if held else None
-    group = say.FURTHEST if held else say.LAWS if count > 1 else say.NEXT
+    group, places = say.FURTHEST if held else say.LAWS, ranking.points.to_dict("records")
     widest = ranking.widest(along, 0 if in_short else MOST_TOLD, against)
-    for at, high, low in widest if count > 1 else [(0, ranking.first[0], ranking.second[0])]:
-        who, other = (low, high) if high == against else (high, low)
+    if len(places) == 1:
+        group, places, widest = say.NEXT, [{}], [(0, ranking.first[0], ranking.second[0])]
+    for at, high, low in widest:
+        one, other = (low, high) if high == against else (high, low)
         mean, error = ranking.mean[at], ranking.error[at]
-        value, slack = mean[who] - mean[other], error[who] + error[other]
-        where = ranking.points.iloc[at].to_dict() if count > 1 else {}
-        slots = {"one": names[who], "other": names[other], "mean": with_error(mean[who], error[who])}
-        yield told(group, value, far=_far(value, slack, where), **slots)
+        value, slack = mean[one] - mean[other], error[one] + error[other]
+        slots = {"one": names[one], "other": names[other], "mean": with_error(mean[one], error[one])}
+        yield told(group, value, far=_far(value, slack, places[at]), **slots)
 
 
 def _stretch(points: pd.DataFrame, start: int, stop: int) -> Markup:
@@ -183,7 +179,7 @@ def shapes_told(run: Facts) -> Markup:
 
 
 def _shape(curve: CurveRows) -> str:
-    return str(curve.first("shape")["shape"])
+    return str(curve.row["shape"])
 
 
 def _by_shape(curves: Sequence[CurveRows]) -> list[list[CurveRows]]:
@@ -194,9 +190,8 @@ def _by_shape(curves: Sequence[CurveRows]) -> list[list[CurveRows]]:
 
 def _end(run: Facts, found: Sequence[CurveRows]) -> Markup:
     """Where slip stops reversing: one belt speed for all, or between which; those known to more than themselves."""
-    name = "reversal_end"
     known = [curve for curve in found if len(say.known_ends(curve.rows))]
-    ends = [run.speed_in_given_units(curve, curve.first(name, f"{name}_error"), name) for curve in known]
+    ends = [run.speed_in_given_units(curve, "reversal_end") for curve in known]
     if not ends:
         return Markup("")
     (low, low_error), (high, high_error) = min(ends), max(ends)

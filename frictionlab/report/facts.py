@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -39,9 +39,10 @@ class CurveRows(NamedTuple):
         """All of them."""
         return self.table.iloc[self.places]
 
-    def first(self, *names: str) -> dict[str, Any]:
-        """Of the first row what the table has of these columns."""
-        return {name: self.table[name].iat[self.places[0]] for name in names if name in self.table}
+    @property
+    def row(self) -> pd.Series:
+        """The first of them."""
+        return self.table.iloc[self.places[0]]
 
     @property
     def of(self) -> tuple[str, ...]:
@@ -138,15 +139,17 @@ class Facts:
             found[curve.key] = float(ratios[ratios.abs() < float("inf")].median())
         return {key: scale for key, scale in found.items() if scale == scale}
 
-    def speed_in_given_units(
-        self, curve: CurveRows, row: Mapping[str, Any], name: str
-    ) -> tuple[float, float]:
-        """A belt speed of a row of a curve, and its error; 0 for that of a point."""
+    def speed_in_given_units(self, curve: CurveRows, name: str) -> tuple[float, float]:
+        """A belt speed of the first row of a curve, and its error; 0 for that of a point."""
         scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
-        return scale * float(row[name]), scale * float(row.get(f"{name}_error", 0.0))
+        return scale * float(curve.row[name]), scale * float(curve.row.get(f"{name}_error", 0.0))
 
 
-def whose(curves: Sequence[CurveRows]) -> Iterator[list[Cell]]:
-    """Of each curve its law, its method where there are several, and what tells it from the others."""
+def whose(curves: Sequence[CurveRows]) -> dict[Cell, Callable[[CurveRows], Cell]]:
+    """Columns of a table of curves: law, method where there are several, and what tells one from the others."""
     several = len({curve.method for curve in curves}) > 1
-    return ([curve.law, curve.method if several else "", curve.name] for curve in curves)
+    return {
+        "law": lambda curve: curve.law,
+        "method": lambda curve: curve.method if several else "",
+        "curve": lambda curve: curve.name,
+    }

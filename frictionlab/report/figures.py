@@ -15,11 +15,10 @@ from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family
 from frictionlab.charts.figures import OTHER_FIGURES
 from frictionlab.report.facts import Facts
-from frictionlab.report.question import given_of, is_taken, values_listed
-from frictionlab.report.tables import html, joined_values, setting, symbol_html, unit_html, word_html
+from frictionlab.report.question import given_of, in_html, is_taken, values_listed
+from frictionlab.report.tables import joined_values, setting, symbol_html, unit_html, word_html
 from frictionlab.runner.results import folder_of
 from frictionlab.runner.words import counted
-from frictionlab.values.columns import typeset
 from frictionlab.values.quantities import Written
 
 LARGEST_SVG = 400_000
@@ -151,7 +150,7 @@ def _held_and_missing(run: Facts) -> Iterator[Markup]:
     """The values of the scene, no defaults, that all points share; how many points have no number but a mark."""
     study = run.saved.study
     fixed = [
-        Markup("{} = {}").format(symbol_html(name), html(typeset(value.text)))
+        Markup("{} = {}").format(symbol_html(name), in_html(value))
         if isinstance(value, Written)
         else setting(name, value)
         for name, value in given_of(study, defaults=False).items()

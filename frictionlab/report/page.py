@@ -6,7 +6,7 @@ The page of a fit: sentences, the figure, how well each law fits, the numbers wi
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from frictionlab.report.answer import paragraphs
 from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.report.facts import Facts
 from frictionlab.report.sources import bibtex, published
-from frictionlab.report.tables import Grid, grid, size
+from frictionlab.report.tables import Cell, Grid, grid, in_order, number, size
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.results import Results, folder_of
 from frictionlab.runner.words import counted
@@ -110,23 +110,19 @@ def wall(seconds: float) -> str:
 
 
 def _versions(saved: Results) -> Grid:
-    account = saved.account
-    own = {name: account.get(name) for name in ("frictionlab", "python", "platform")}
-    rows = [[name, str(value)] for name, value in (own | account["packages"]).items() if value]
-    return grid("Versions with which the numbers were made", ["what", "version"], rows)
+    own = {name: saved.account.get(name) for name in ("frictionlab", "python", "platform")}
+    made_with = [(name, str(value)) for name, value in (own | saved.account["packages"]).items() if value]
+    return grid("Versions with which the numbers were made", in_order("what", "version"), made_with)
 
 
 def _runs(saved: Results) -> Grid:
-    rows = [
-        [
-            str(run.get("started", "")),
-            wall(run["seconds"]),
-            counted(int(run.get("computed", 0)), "point"),
-            " ".join(f"--set {each}" for each in run.get("overrides", [])),
-        ]
-        for run in saved.account["runs"]
-    ]
-    return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
+    columns: dict[Cell, Callable[[dict[str, Any]], Cell]] = {
+        "started": lambda run: str(run.get("started", "")),
+        "took": lambda run: wall(run["seconds"]),
+        "computed": lambda run: counted(int(run.get("computed", 0)), "point"),
+        "set on the command line": lambda run: " ".join(f"--set {each}" for each in run.get("overrides", [])),
+    }
+    return grid("When it ran", columns, saved.account["runs"])
 
 
 def write_index(folder: Path, runs: Sequence[Results]) -> Path:
@@ -177,40 +173,33 @@ def write_fit_page(found: Any, path: Any, title: str = "") -> Path:
 
 def fit_page(found: Any, title: str, picture: str) -> str:
     """The page as HTML."""
-    parts = {"sentences": found.sentences, "laws": _laws(found.laws), "numbers": _numbers(found.table)}
-    return rendered("fit.html", title=title, picture=picture, caption=FIT_CAPTION, **parts)
+    laws, numbers = ([row for _, row in table.iterrows()] for table in (found.laws, found.table))
+    return rendered(
+        "fit.html",
+        title=title,
+        picture=picture,
+        caption=FIT_CAPTION,
+        sentences=found.sentences,
+        laws=grid("Laws, by what is left over", _LAWS, laws),
+        numbers=grid("Fitted numbers, with the error from blocks", _NUMBERS, numbers),
+    )
 
 
-def _laws(table: pd.DataFrame) -> Grid:
-    head = ["law", "rms", "left out", "AIC", "starts that agree", "why there is no fit"]
-    rows = [
-        [
-            str(row["law"]),
-            f"{row['rms']:.4g}",
-            with_error(row["left_out_rms"], row["left_out_rms_error"]),
-            f"{row['aic']:.5g}",
-            f"{row['starts_agreeing']:.0f}",
-            "",
-        ]
-        if row["status"] == "ok"
-        else [str(row["law"]), "", "", "", "", str(row["reason"])]
-        for _, row in table.iterrows()
-    ]
-    return grid("Laws, by what is left over", head, rows)
-
-
-def _numbers(table: pd.DataFrame) -> Grid:
-    head = ["law", "number", "value", "naive error", "95 %", "profile", "on an end of its range"]
-    rows = [
-        [
-            str(row["law"]),
-            str(row["parameter"]),
-            with_error(row["value"], row["block_error"]),
-            size(row["naive_error"]),
-            f"{row['low']:.5g} to {row['high']:.5g}",
-            str(row["shape"]),
-            "yes" if row["at_bound"] else "",
-        ]
-        for _, row in table.iterrows()
-    ]
-    return grid("Fitted numbers, with the error from blocks", head, rows)
+_LAWS: dict[Cell, Callable[[pd.Series], Cell]] = {
+    "law": lambda law: str(law["law"]),
+    "rms": lambda law: number(law["rms"], 4),
+    "left out": lambda law: with_error(law["left_out_rms"], law["left_out_rms_error"]),
+    "AIC": lambda law: number(law["aic"], 5),
+    "starts that agree": lambda law: number(law["starts_agreeing"]),
+    "why there is no fit": lambda law: "" if law["status"] == "ok" else str(law["reason"]),
+}
+_NUMBERS: dict[Cell, Callable[[pd.Series], Cell]] = {
+    "law": lambda fitted: str(fitted["law"]),
+    "number": lambda fitted: str(fitted["parameter"]),
+    "value": lambda fitted: with_error(fitted["value"], fitted["block_error"]),
+    "naive error": lambda fitted: size(fitted["naive_error"]),
+    "95 %": lambda fitted: f"{fitted['low']:.5g} to {fitted['high']:.5g}",
+    "profile": lambda fitted: str(fitted["shape"]),
+    "on an end of its range": lambda fitted: "yes" if fitted["at_bound"] else "",
+}
+"""Columns of the tables of a fit."""

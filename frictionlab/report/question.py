@@ -11,7 +11,7 @@ from markupsafe import Markup
 from frictionlab.report import sentences as say
 from frictionlab.report.sentences import told
 from frictionlab.report.sources import law_text, method_text
-from frictionlab.report.tables import Cell, Grid, grid, html, number, symbol_html
+from frictionlab.report.tables import Cell, Grid, grid, html, in_order, number, symbol_html
 from frictionlab.runner.words import in_words
 from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.units import own_length
@@ -73,15 +73,15 @@ def scene_grid(study: Study) -> Grid:
     rows = [
         [
             *_named(shown_name(study, name)),
-            "swept" if study.sweep.get(name) is not None else _told_value(study, name, value),
+            "swept" if name in study.sweep else _told_value(study, name, value),
         ]
         for name, value in given_of(study).items()
     ]
-    return grid("The scene", ["quantity", "symbol", "value"], rows)
+    return grid("The scene", in_order("quantity", "symbol", "value"), rows)
 
 
-def _told_value(study: Study, name: str, value: Any) -> str:
-    told = shown_number(study, name, value)
+def _told_value(study: Study, name: str, value: Any) -> Cell:
+    told = number(value / study.units[name].size if name in study.units else value)
     return (
         f"{told}, taken from the others, to scale nondimensional columns" if is_taken(study, name) else told
     )
@@ -101,11 +101,6 @@ def given_of(study: Study, defaults: bool = True) -> dict[str, Any]:
 def shown_name(study: Study, name: str) -> str:
     """The name of an input with the unit in which its numbers were written."""
     return f"{name}{SHOWN_IN}{study.units[name].unit}" if name in study.units else name
-
-
-def shown_number(study: Study, name: str, value: Any) -> str:
-    """The value of an input in that unit."""
-    return number(value / study.units[name].size if name in study.units else value)
 
 
 def _named(name: str) -> list[Cell]:
@@ -134,7 +129,7 @@ def laws_grid(study: Study) -> Grid:
         _choice(study.in_words["law"][law.label], law.kind, law_text(law), law.parameters | swept[law.label])
         for law in study.laws
     ]
-    return grid("The friction laws", ["law", "kind", "what it is", "parameters"], rows)
+    return grid("The friction laws", in_order("law", "kind", "what it is", "parameters"), rows)
 
 
 def methods_grid(study: Study) -> Grid:
@@ -144,20 +139,19 @@ def methods_grid(study: Study) -> Grid:
         _choice(said[each.label], each.name, method_text(each.name), each.parameters)
         for each in study.methods
     ]
-    return grid("The methods", ["method", "kind", "what it is", "parameters"], rows)
+    return grid("The methods", in_order("method", "kind", "what it is", "parameters"), rows)
 
 
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
     """Its words, its kind where that is another name, the first line of its text, its parameters with values."""
-    told = [
-        Markup("{} = {}").format(
-            symbol_html(f"law.{name}"),
-            html(typeset(in_words(value))) if isinstance(value, Written) else in_words(value),
-        )
-        for name, value in parameters.items()
-        if value is not None
-    ]
+    given = {name: value for name, value in parameters.items() if value is not None}
+    told = [Markup("{} = {}").format(symbol_html(f"law.{name}"), in_html(given[name])) for name in given]
     return [label, "" if name == label else name, text.partition("\n")[0], Markup(", ").join(told)]
+
+
+def in_html(value: Any) -> Cell:
+    """A value in words; one that was written with a unit as it was written."""
+    return html(typeset(value.text)) if isinstance(value, Written) else in_words(value)
 
 
 def sweep_grid(study: Study) -> Grid:
@@ -175,7 +169,9 @@ def sweep_grid(study: Study) -> Grid:
                 ends = number(along.start / scale), number(along.stop / scale)
                 told = f"{ends[0]} … {ends[1]}, {CHOSEN.format(number(along.within))}"
             rows.append([name, path, told])
-    return grid("The sweep: every combination of these is a point", ["quantity", "key", "values"], rows)
+    return grid(
+        "The sweep: every combination of these is a point", in_order("quantity", "key", "values"), rows
+    )
 
 
 def _sweep_name(study: Study, path: str) -> Cell:

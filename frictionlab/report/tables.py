@@ -6,10 +6,10 @@ Symbols and words of inputs and columns as HTML: the mathtext of the figures, wi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from html.entities import html5
-from itertools import islice
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -102,22 +102,30 @@ class Grid(NamedTuple):
 
 def grid(
     caption: str,
-    head: Sequence[Cell],
-    rows: Iterable[Sequence[Cell]],
+    columns: Mapping[Cell, Callable[[Any], Cell]],
+    of: Sequence[Any],
     what: str = "rows",
     file: str = "results.csv",
-    total: int = 0,
 ) -> Grid:
-    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` of all its rows.
+    """A table of at most ``MOST_ROWS`` things; columns that are empty in every row are left out.
 
-    what: they are; file: has all of them. total: how many they are, of an iterator.
+    columns: heads, and what is told of a thing below each. what: the things are; file: has all of them.
     """
-    shown = list(islice(rows, MOST_ROWS))
-    left = (len(rows) if isinstance(rows, list) else total) - len(shown)
-    kept = [place for place in range(len(head)) if any(row[place] for row in shown)]
+    shown = [[minus(cell(each)) for cell in columns.values()] for each in of[:MOST_ROWS]]
+    kept = [place for place in range(len(columns)) if any(row[place] for row in shown)]
+    left = len(of) - len(shown)
     below = f"... and {left} more {what}, all of them in {file}" if left else ""
-    written = [[minus(row[place]) for place in kept] for row in shown]
-    return Grid(caption, [head[place] for place in kept], written, below)
+    return Grid(
+        caption,
+        [[*columns][place] for place in kept],
+        [[row[place] for place in kept] for row in shown],
+        below,
+    )
+
+
+def in_order(*heads: Cell) -> dict[Cell, Callable[[Any], Cell]]:
+    """Columns of things that are rows of cells already."""
+    return {head: itemgetter(place) for place, head in enumerate(heads)}
 
 
 def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:

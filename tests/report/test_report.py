@@ -318,7 +318,7 @@ def test_a_table_of_few_points_is_shown_whole(ran: Runner) -> None:
     many = page_of(ran("many"))
 
     assert few[0] == ["quantity", "Coulomb by fake, vb = 1", "Coulomb by fake, vb = 2"]
-    assert few[1][0] == "mean friction μ̄"
+    assert few[1][0] == "mean friction coefficient μ̄"
     assert not any(caption.text == "Every number found" for caption in many.all("caption"))
 
 

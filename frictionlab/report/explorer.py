@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable
 from html import escape, unescape
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -57,9 +56,8 @@ def _start(curves: list[dict[str, Any]], speed: float) -> dict[str, float] | Non
     if (first := next(shown, None)) is None:
         return None
     chosen = {name: first[name] for name in ("frequency", "damping", "friction")}
-    return {
-        name: float(f"{value:.6g}") for name, value in {**chosen, "belt": abs(speed) / first["limit"]}.items()
-    }
+    chosen["belt"] = abs(speed) / first["limit"]
+    return {name: float(f"{value:.6g}") for name, value in chosen.items()}
 
 
 def label(name: str, law: str = "") -> str:
@@ -77,11 +75,8 @@ def _has_numbers(curve: CurveData) -> bool:
 def _settings(curve: CurveData) -> dict[Quantity, float | str]:
     """What selects a curve among those of its law and method."""
     given = [*curve.panel, *([] if curve.member is None else [curve.member])]
-    return {
-        (name, curve.law if name.startswith("law.") else ""): value
-        for name, value in given
-        if value is not None
-    }
+    told = {(name, curve.law if name.startswith("law.") else ""): value for name, value in given}
+    return {quantity: value for quantity, value in told.items() if value is not None}
 
 
 def _swept(family: Family) -> dict[Quantity, list[float | str]]:
@@ -90,12 +85,12 @@ def _swept(family: Family) -> dict[Quantity, list[float | str]]:
     for curve in family.curves:
         for quantity, value in _settings(curve).items():
             found.setdefault(quantity, {})[value] = None
-    return {quantity: _in_order(values) for quantity, values in found.items() if len(values) > 1}
+    several = {quantity: values for quantity, values in found.items() if len(values) > 1}
+    return {quantity: sorted(values, key=_rank) for quantity, values in several.items()}
 
 
-def _in_order(values: Iterable[float | str]) -> list[float | str]:
-    numbers = [value for value in values if not isinstance(value, str)]
-    return [*sorted(numbers), *(value for value in values if isinstance(value, str))]
+def _rank(value: float | str) -> float:
+    return math.inf if isinstance(value, str) else value
 
 
 def _curve(
@@ -111,34 +106,25 @@ def _curve(
     it takes none.
     """
     settings, rows, solved = _settings(curve), curve.rows, page_scene(curve, abscissa)
-    at = [
-        values.index(settings[quantity]) if quantity in settings else None
-        for quantity, values in swept.items()
-    ]
+    look, kinks = (curve.law, curve.method), curve.kinks or [None]
+    at = [values.index(settings[each]) if each in settings else None for each, values in swept.items()]
+    numbers = rows.reindex(columns=[abscissa, "mean_friction", "error", "mean_low", "mean_high"])
+    told = zip(("x", "mean", "error", "low", "high"), numbers.columns, strict=True)
     return {
         "law": curve.law,
         "method": curve.method,
-        "look": looks.index(pair) if (pair := (curve.law, curve.method)) in looks else None,
+        "look": looks.index(look) if look in looks else None,
         "at": at,
-        "x": _numbers(rows[abscissa]),
-        "mean": _numbers(rows["mean_friction"]),
-        "error": _numbers(rows["error"]),
-        "low": _numbers(rows.get("mean_low")) or [None] * len(rows),
-        "high": _numbers(rows.get("mean_high")) or [None] * len(rows),
+        **{name: _numbers(numbers[column]) for name, column in told},
         "status": rows["status"].astype(str).tolist(),
-        "kink": _kink(curve),
+        "kink": kinks[-1],
         "coulomb": solved and solved._asdict(),
     }
 
 
-def _kink(curve: CurveData) -> float | None:
-    return curve.kinks[-1] if curve.kinks else None
-
-
-def _numbers(column: pd.Series | None) -> list[float | None]:
+def _numbers(column: pd.Series) -> list[float | None]:
     """A column as JSON can hold it."""
-    found = [] if column is None else column.astype(float).tolist()
-    return [value if math.isfinite(value) else None for value in found]
+    return [value if math.isfinite(value) else None for value in column.astype(float).tolist()]
 
 
 # --- the scenes that the page solves itself -----------------------------------------------------------------------
@@ -167,13 +153,8 @@ def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
         return None
     scene = scene_of(curve.rows.iloc[0].to_dict())
     load = 0.0 if scene.drive is None else scene.drive.size(scene.frequency)
-    if (
-        scene.degrees_of_freedom != 1
-        or scene.is_free
-        or not scene.is_harmonic
-        or not load
-        or not scene.damping_ratio
-    ):
+    on_a_line = scene.degrees_of_freedom == 1 and not scene.is_free
+    if not (on_a_line and scene.is_harmonic and load and scene.damping_ratio):
         return None
     rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0.0]
     left = rows["normalized_friction"] != 0.0

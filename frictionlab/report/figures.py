@@ -15,11 +15,10 @@ from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family
 from frictionlab.charts.figures import OTHER_FIGURES
 from frictionlab.report.facts import Facts
-from frictionlab.report.question import given_of, in_html, is_taken, values_listed
-from frictionlab.report.tables import joined_values, setting, symbol_html, unit_html, word_html
+from frictionlab.report.question import given_of, is_taken, values_listed
+from frictionlab.report.tables import joined_values, settings, symbol_html, unit_html, word_html
 from frictionlab.runner.results import folder_of
 from frictionlab.runner.words import counted
-from frictionlab.values.quantities import Written
 
 LARGEST_SVG = 400_000
 """Bytes of a drawing above which the pixels of the same figure are put into the page, where they are fewer."""
@@ -84,8 +83,7 @@ def _of_kept(run: Facts, name: str) -> Picture:
 
 
 def _described(run: Facts, name: str) -> Markup:
-    _, more = OTHER_FIGURES[name]
-    return escape(f"{run.figures.described(name)}{more}")
+    return escape(f"{run.figures.described(name)}{OTHER_FIGURES[name][1]}")
 
 
 def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
@@ -149,15 +147,10 @@ def _lines(family: Family) -> Iterator[Markup]:
 def _held_and_missing(run: Facts) -> Iterator[Markup]:
     """The values of the scene, no defaults, that all points share; how many points have no number but a mark."""
     study = run.saved.study
-    fixed = [
-        Markup("{} = {}").format(symbol_html(name), in_html(value))
-        if isinstance(value, Written)
-        else setting(name, value)
-        for name, value in given_of(study, defaults=False).items()
-        if name not in study.sweep and not is_taken(study, name)
-    ]
+    given = given_of(study, defaults=False).items()
+    fixed = {name: value for name, value in given if name not in study.sweep and not is_taken(study, name)}
     if fixed:
-        yield Markup("Held fixed: {}").format(Markup(", ").join(fixed))
+        yield Markup("Held fixed: {}").format(settings(fixed))
     counts = {status.replace("_", " "): count for status, count in run.saved.counts.items() if status != "ok"}
     if told := [f"{counted(count, 'point')} {status}" for status, count in counts.items()]:
         yield Markup("Without a number, and marked as such: {}").format(", ".join(told))

@@ -11,15 +11,13 @@ from markupsafe import Markup
 from frictionlab.report import sentences as say
 from frictionlab.report.sentences import told
 from frictionlab.report.sources import law_text, method_text
-from frictionlab.report.tables import Cell, Grid, grid, html, in_order, number, symbol_html
-from frictionlab.runner.words import in_words
+from frictionlab.report.tables import Cell, Grid, grid, html, in_order, number, settings, symbol_html
 from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.units import own_length
 from frictionlab.scene.waveforms import SINE, as_fraction
 from frictionlab.study.axes import FRICTION, GridValue, SpeedRange
 from frictionlab.study.study import Study
-from frictionlab.values.columns import SHOWN_IN, symbol, typeset, without_shown_unit, word
-from frictionlab.values.quantities import Written
+from frictionlab.values.columns import SHOWN_IN, symbol, without_shown_unit, word
 from frictionlab.values.units import ShownUnit
 
 MOST_LISTED = 8
@@ -144,14 +142,8 @@ def methods_grid(study: Study) -> Grid:
 
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
     """Its words, its kind where that is another name, the first line of its text, its parameters with values."""
-    given = {name: value for name, value in parameters.items() if value is not None}
-    told = [Markup("{} = {}").format(symbol_html(f"law.{name}"), in_html(given[name])) for name in given]
-    return [label, "" if name == label else name, text.partition("\n")[0], Markup(", ").join(told)]
-
-
-def in_html(value: Any) -> Cell:
-    """A value in words; one that was written with a unit as it was written."""
-    return html(typeset(value.text)) if isinstance(value, Written) else in_words(value)
+    told = settings({f"law.{parameter}": value for parameter, value in parameters.items()})
+    return [label, "" if name == label else name, text.partition("\n")[0], told]
 
 
 def sweep_grid(study: Study) -> Grid:

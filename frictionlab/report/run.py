@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from frictionlab.report.preview import preview_html
 from frictionlab.runner.api import solve_study
 from frictionlab.runner.arguments import (
     Existing,
@@ -263,6 +262,8 @@ class Run(Results):
         return summary(self)
 
     def _repr_html_(self) -> str:
+        from frictionlab.report.preview import preview_html  # with jinja2, which takes a moment
+
         table, curves = (in_shown_units(each, self.study.units) for each in (self.table, self.curves))
         return preview_html(table, curves)
 

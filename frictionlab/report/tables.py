@@ -16,7 +16,8 @@ import pandas as pd
 from markupsafe import Markup, escape
 
 from frictionlab.scene.waveforms import told
-from frictionlab.values.columns import symbol, unit_shown, word
+from frictionlab.values.columns import symbol, typeset, unit_shown, word
+from frictionlab.values.quantities import Written
 
 _RENAMED = {"varphi": "phi", "varepsilon": "epsilon"}  # what TeX calls so
 _ACCENTS = {"bar": "\u0304", "hat": "\u0302", "dot": "\u0307", "tilde": "\u0303"}
@@ -136,18 +137,19 @@ def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
 
 def setting(name: str, value: Any, digits: int = 6) -> Markup:
     """One input with its value and unit, on one line where it is short."""
-    told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit_html(name))
+    unit = "" if isinstance(value, Written) else unit_html(name)
+    told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit)
     short = len(told.striptags()) <= SHORT_SETTING
     return Markup('<span class="short">{}</span>').format(told) if short else told
 
 
 def number(value: Any, digits: int = 6) -> Cell:
-    """A number to so many digits, words for a waveform of points; nothing for one that does not apply."""
-    if isinstance(value, str):
-        return told(value).words if value.startswith("points ") else value
-    if value is None or pd.isna(value):
-        return ""
-    return minus(f"{value:.{digits}g}")
+    """A number to so many digits, or with the unit it was written in; words; nothing for one that does not apply."""
+    if isinstance(value, Written):
+        return html(typeset(value.text))
+    if isinstance(value, str | bool):
+        return told(str(value)).words if str(value).startswith("points ") else str(value)
+    return "" if value is None or pd.isna(value) else minus(f"{value:.{digits}g}")
 
 
 def minus(text: Cell) -> Cell:

@@ -16,7 +16,7 @@ LIMITS = {
     "laws": 686,
     "methods": 8034,
     "motion": 4596,
-    "report": 1490,
+    "report": 1467,
     "runner": 4073,
     "scene": 1842,
     "study": 2649,

@@ -24,7 +24,7 @@ from frictionlab.report.tables import (
     the,
     unit_html,
 )
-from frictionlab.runner.pairs import NOBODY, Ranking, best_rows, ranking_of
+from frictionlab.runner.pairs import NOBODY, Difference, Ranking, best_rows, ranking_of
 from frictionlab.runner.table import swept_inputs
 from frictionlab.runner.words import counted
 from frictionlab.values.columns import SHAPES
@@ -58,7 +58,7 @@ def means_told(run: Facts) -> Markup:
         along = sweep_of(run.table).along or run.speed
         ranking = ranking_of(run.table, along)
         found = [_curve(run, best, along)] if ranking is None else [*_ranked(run, ranking, along)]
-        found += [*_methods(run), *_own_errors(run)]
+        found += _of_methods(run)
     silent = (told(say.SILENT, rows, law=law) for law, rows in run.table.groupby("law", sort=False))
     return Markup(" ").join(filter(None, [*found, *silent]))
 
@@ -76,28 +76,24 @@ def _models(run: Facts) -> Iterator[Markup]:
     if len(pairs) > MOST_TOLD:
         whose = [(pair.law, pair.one) for pair in pairs]
         pairs = [pair for at, pair in enumerate(pairs) if whose.index(whose[at]) == at][:MOST_TOLD]
-    for pair in pairs:
-        of = f" of {pair.law}" if run.table["law"].nunique() > 1 else ""
-        far = _far(abs(pair.value), pair.error, pair.where)
-        yield told(say.MODEL, pair, one=f"{the(pair.one)}{of}", other=the(pair.other), far=far)
+    of_law = " of {}" if run.table["law"].nunique() > 1 else ""
+    return (_pair(say.MODEL, pair, of_law.format(pair.law)) for pair in pairs)
 
 
-def _methods(run: Facts) -> Iterator[Markup]:
-    """Where the methods of one law differ most."""
+def _pair(sentences: say.Sentences, pair: Difference, of_law: str = "") -> Markup:
+    far = _far(abs(pair.value), pair.error, pair.where)
+    return told(sentences, pair, one=f"{the(pair.one)}{of_law}", other=the(pair.other), far=far)
+
+
+def _of_methods(run: Facts) -> Iterator[Markup]:
+    """Where the methods of one law differ most; errors of reduced models beside which no full answers stand."""
     if run.method_pairs and run.table["law"].nunique() == 1:
-        pair = max(run.method_pairs, key=lambda each: (each.apart > 0, abs(each.value)))
-        far = _far(abs(pair.value), pair.error, pair.where)
-        yield told(say.METHODS, pair, one=the(pair.one), other=the(pair.other), far=far)
-
-
-def _own_errors(run: Facts) -> Iterator[Markup]:
-    """How far reduced models are off by their own errors, where no full answers stand beside them."""
+        yield _pair(say.METHODS, max(run.method_pairs, key=lambda each: (each.apart > 0, abs(each.value))))
     rows = run.table[run.table["method"].isin(run.reduced) & run.table["error"].notna()]
     for method, own in rows.groupby("method", sort=False):
         worst = own.loc[own["error"].idxmax()]
-        yield told(
-            say.OWN_ERROR, worst, one=the(str(method)), far=_far(worst["error"], 0.0, run.where(worst))
-        )
+        far = _far(worst["error"], 0.0, run.where(worst))
+        yield told(say.OWN_ERROR, worst, one=the(str(method)), far=far)
 
 
 def _curve(run: Facts, best: pd.DataFrame, along: str) -> Markup:
@@ -191,7 +187,7 @@ def _by_shape(curves: Sequence[CurveRows]) -> list[list[CurveRows]]:
 def _end(run: Facts, found: Sequence[CurveRows]) -> Markup:
     """Where slip stops reversing: one belt speed for all, or between which; those known to more than themselves."""
     known = [curve for curve in found if len(say.known_ends(curve.rows))]
-    ends = [run.speed_in_given_units(curve, "reversal_end") for curve in known]
+    ends = [curve.measure("reversal_end") for curve in known]
     if not ends:
         return Markup("")
     (low, low_error), (high, high_error) = min(ends), max(ends)

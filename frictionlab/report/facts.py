@@ -15,7 +15,7 @@ from frictionlab.report.tables import Cell, settings
 from frictionlab.runner.pairs import Difference, method_pairs
 from frictionlab.runner.results import Results
 from frictionlab.runner.table import swept_inputs
-from frictionlab.values.columns import BELT_SPEED, belt_speed
+from frictionlab.values.columns import belt_speed, shown_column
 from frictionlab.values.units import as_shown
 
 if TYPE_CHECKING:
@@ -44,6 +44,11 @@ class CurveRows(NamedTuple):
         """The first of them."""
         return self.table.iloc[self.places[0]]
 
+    def measure(self, name: str) -> tuple[Any, Any]:
+        """A number of the first of them with its error, in the units in which it is shown; text with 0."""
+        column, error = (shown_column(self.table.columns, each) for each in (name, f"{name}_error"))
+        return self.row[column], self.row.get(error, 0.0)
+
     @property
     def of(self) -> tuple[str, ...]:
         """The law and the values, which curves by other methods have, too."""
@@ -53,11 +58,6 @@ class CurveRows(NamedTuple):
     def name(self) -> Markup:
         """What tells the curve from the others of its law and method."""
         return settings(self.where)
-
-    @property
-    def key(self) -> str:
-        """Law, method and values as one word, the same in every table that has the curve."""
-        return f"{self.law}, {self.method}, {self.name}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,20 +129,6 @@ class Facts:
             for (law, method, *values), places in groups.items()
         ]
         return sorted(found, key=lambda curve: curve.places[0])
-
-    @cached_property
-    def _scales(self) -> dict[str, float]:
-        """Of each curve by its key a belt speed in the units given over the nondimensional one."""
-        found = {}
-        for curve in self.curves if self.speed != BELT_SPEED else ():
-            ratios = curve.rows[self.speed] / curve.rows[BELT_SPEED]
-            found[curve.key] = float(ratios[ratios.abs() < float("inf")].median())
-        return {key: scale for key, scale in found.items() if scale == scale}
-
-    def speed_in_given_units(self, curve: CurveRows, name: str) -> tuple[float, float]:
-        """A belt speed of the first row of a curve, and its error; 0 for that of a point."""
-        scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
-        return scale * float(curve.row[name]), scale * float(curve.row.get(f"{name}_error", 0.0))
 
 
 def whose(curves: Sequence[CurveRows]) -> dict[Cell, Callable[[CurveRows], Cell]]:

@@ -109,7 +109,7 @@ def onset_grid(run: Facts) -> Grid:
     onsets = [curve._replace(places=[place]) for curve in curves for place in curve.places]
     columns = whose(curves) | {
         "what": lambda onset: onset.row["onset"].replace("_", " "),
-        Markup("belt speed{}").format(unit_html(run.speed)): partial(_measure, run, "belt_speed"),
+        Markup("belt speed{}").format(unit_html(run.speed)): partial(_measure, "belt_speed"),
         "how it was found": lambda onset: onset.row["how"],
     }
     return grid("Onsets along rising belt speed", columns, onsets, "onsets", "onsets.csv")
@@ -124,9 +124,7 @@ def shape_grid(run: Facts) -> Grid:
         return NOTHING
     curves, unit = run.curves_of(table), unit_html(run.speed)
     heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name in ALSO_IN_SI else "") for name in own]
-    columns = whose(curves) | {
-        head: partial(_measure, run, name) for head, name in zip(heads, own, strict=True)
-    }
+    columns = whose(curves) | {head: partial(_measure, name) for head, name in zip(heads, own, strict=True)}
     caption = "Shape of each curve against its chord, the line from rest to the end of reversal"
     found = grid(caption, columns, curves, "curves", "curves.csv")
     missing = (
@@ -135,13 +133,9 @@ def shape_grid(run: Facts) -> Grid:
     return found._replace(below=" ".join(filter(None, [found.below, *missing])))
 
 
-def _measure(run: Facts, name: str, curve: CurveRows) -> str:
-    row = curve.row
-    if isinstance(row[name], str):
-        return row[name]
-    if name in ALSO_IN_SI:
-        return with_error(*run.speed_in_given_units(curve, name))
-    return with_error(row[name], row.get(f"{name}_error"))
+def _measure(name: str, curve: CurveRows) -> str:
+    value, error = curve.measure(name)
+    return value if isinstance(value, str) else with_error(value, error)
 
 
 def why_missing(curves: pd.DataFrame) -> list[tuple[int, str]]:

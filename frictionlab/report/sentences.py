@@ -10,6 +10,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.runner.pairs import NOBODY, Ranking
+from frictionlab.scene.scene import Scene
 
 Sentences = Mapping[str, Callable[[Any], bool]]
 """Templates, and when each is true."""
@@ -26,17 +27,15 @@ def told(sentences: Sentences, of: Any, **slots: Any) -> Markup:
 # Rows of one curve, by the input of the axis
 
 
-def is_flat(rows: pd.DataFrame) -> bool:
-    """Check that no two means differ by more than the errors of the least and the greatest."""
-    low, high = rows["mean_friction"].argmin(), rows["mean_friction"].argmax()
-    mean, error = rows["mean_friction"].to_numpy(float), rows["error"].to_numpy(float)
-    return bool(mean[high] - mean[low] <= error[high] + error[low])
-
-
-def moves(rows: pd.DataFrame, way: float) -> bool:
-    """Check that every step along one axis goes this way, or is within errors."""
-    steps, slack = way * rows["mean_friction"].diff()[1:], rows["error"].rolling(2).sum()[1:]
-    return rows.index.is_unique and not is_flat(rows) and bool((steps >= -slack).all())
+def way(rows: pd.DataFrame) -> str:
+    """Way of a curve, but for errors: flat, up or down along one axis throughout, else to and fro."""
+    mean, error = (rows[name].to_numpy(float) for name in ("mean_friction", "error"))
+    low, high = mean.argmin(), mean.argmax()
+    if mean[high] - mean[low] <= error[high] + error[low]:
+        return "flat"
+    steps, slack = np.diff(mean), error[1:] + error[:-1]
+    ways = {"up": steps >= -slack, "down": steps <= slack}
+    return next((name for name, so in ways.items() if rows.index.is_unique and so.all()), "to and fro")
 
 
 def passes_zero(rows: pd.DataFrame) -> list[int]:
@@ -49,13 +48,11 @@ def passes_zero(rows: pd.DataFrame) -> list[int]:
 CURVE: Sentences = {
     "The mean friction coefficient of {law} is {first}.": lambda rows: len(rows) == 1,
     "Mean friction of {law} is the same within its errors at all {points}: {first}.": (
-        lambda rows: len(rows) > 1 and is_flat(rows)
+        lambda rows: len(rows) > 1 and way(rows) == "flat"
     ),
-    "Mean friction of {law} rises from {first} to {last}.": lambda rows: moves(rows, 1.0),
-    "Mean friction of {law} falls from {first} to {last}.": lambda rows: moves(rows, -1.0),
-    "Mean friction of {law} lies between {least} and {most}.": (
-        lambda rows: not (is_flat(rows) or moves(rows, 1.0) or moves(rows, -1.0))
-    ),
+    "Mean friction of {law} rises from {first} to {last}.": lambda rows: way(rows) == "up",
+    "Mean friction of {law} falls from {first} to {last}.": lambda rows: way(rows) == "down",
+    "Mean friction of {law} lies between {least} and {most}.": lambda rows: way(rows) == "to and fro",
     "It passes zero between {before} and {after}.": lambda rows: (
         rows.index.is_unique and passes_zero(rows) != []
     ),
@@ -131,9 +128,7 @@ UNANSWERED: Sentences = {
 }
 SEEN: Sentences = {", with means from {low} to {high}": has("mean_low")}
 ROUGH: Sentences = {
-    '<a href="#curves">errors of up to {error}</a> above the tolerance of {tolerance} at {points}': has(
-        "error"
-    )
+    '<a href="#curves">errors up to {error}</a> above the tolerance of {tolerance} at {points}': has("error")
 }
 REMARKS: Sentences = {'<a href="#odd">a remark</a> at {points}': has("reason")}
 NEEDED: Sentences = {
@@ -142,9 +137,7 @@ NEEDED: Sentences = {
 }
 WELL: Sentences = {"Errors are at most {error}{besides}.": has("error")}
 FAILED: Sentences = {'<a href="#expected">{failed} of {expected} FAILED</a>': lambda passed: not all(passed)}
-HELD: Sentences = {
-    "What the study expects holds: {expected}.": lambda passed: all(passed) and len(passed) > 0
-}
+HELD: Sentences = {"What the study expects holds: {expected}.": lambda passed: all(passed) and passed != []}
 
 # Curves of one shape, by a reduced model or not, and the table of all curves
 BENDS: Sentences = {
@@ -174,23 +167,27 @@ def known_ends(curves: pd.DataFrame) -> pd.DataFrame:
 
 # A scene, and what changes in time in it
 
+
+def has_degrees(count: int) -> Callable[[Scene], bool]:
+    """Check for a scene of so many degrees of freedom."""
+    return lambda scene: scene.degrees_of_freedom == count
+
+
 SCENE: Sentences = {
-    "Prescribed slip: a body whose slip over the belt is given, not computed.": lambda scene: (
-        not scene.degrees_of_freedom
-    ),
-    "A body with one degree of freedom, on a moving belt.": lambda scene: scene.degrees_of_freedom == 1,
-    "A body with two degrees of freedom, in the plane, on a moving belt.": lambda scene: (
-        scene.degrees_of_freedom == 2
-    ),
+    "Prescribed slip: a body whose slip over the belt is given, not computed.": has_degrees(0),
+    "A body with one degree of freedom, on a moving belt.": has_degrees(1),
+    "A body with two degrees of freedom, in the plane, on a moving belt.": has_degrees(2),
     "No spring holds it along the belt.": lambda scene: scene.is_free,
     "Nothing shakes it.": lambda scene: scene.undriven,
 }
-UNITS: Sentences = {
-    "Given in SI units; a law's parameters are per unit normal load, but for those of the contact.": (
-        lambda scene: scene.dimensional is not None
-    ),
+GIVEN_IN_SI = "Given in SI units; a law's parameters are per unit normal load, but for those of the contact."
+NONDIMENSIONAL = (
     "Nondimensional: lengths in L, times in 1/ω₁, forces in K₁L, speeds in ω₁L; friction coefficients are per unit "
-    "normal load.": lambda scene: scene.dimensional is None,
+    "normal load."
+)
+UNITS: Sentences = {
+    GIVEN_IN_SI: lambda scene: scene.dimensional is not None,
+    NONDIMENSIONAL: lambda scene: scene.dimensional is None,
 }
 SIZES = "amplitude", "unbalance", "velocity_amplitude"
 SHAKEN: Sentences = {

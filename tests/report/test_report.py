@@ -294,7 +294,7 @@ def test_errors_are_given_by_curve_and_no_tolerance_is_asked_of_a_long_time_mean
     (row,) = page.table("Curves")[1:]
     assert row[-4:] == ["2.0e-04", "vb = 3", "guaranteed, estimated, statistical", "1 point"]
     told = " ".join(page.all("header")[0].text.split())
-    assert "errors of up to 3e-05 above the tolerance of 1e-06 at 1 point." in told
+    assert "errors up to 3e-05 above the tolerance of 1e-06 at 1 point." in told
 
 
 def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Runner) -> None:

@@ -16,7 +16,7 @@ LIMITS = {
     "laws": 686,
     "methods": 8034,
     "motion": 4596,
-    "report": 1467,
+    "report": 1444,
     "runner": 4073,
     "scene": 1842,
     "study": 2649,

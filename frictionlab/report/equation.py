@@ -12,27 +12,20 @@ from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.waveforms import SINE
 from frictionlab.study.study import Study
 
-_INERTIA = "{mass} {a}", "{a}"
+_INERTIA = ("{mass?} {a}",)
 _DASHPOT = (
     "{@damping} {rate}",
     "2 {@damping_ratio} √({@stiffness} {mass}) {rate}",
-    "2 {@damping_ratio} {mass} {@natural_frequency} {rate}",
-    "2 {@damping_ratio} {@natural_frequency} {rate}",
-    "2 {@damping_ratio} {rate}",
+    "2 {@damping_ratio} {mass?} {@natural_frequency?} {rate}",
 )
-_SPRING = (
-    "{@stiffness} {stretch}",
-    "{mass} {@natural_frequency}<sup>2</sup> {stretch}",
-    "{@natural_frequency}<sup>2</sup> {stretch}",
-    "{stretch}",
-)
+_SPRING = "{@stiffness} {stretch}", "{mass?} {@natural_frequency}<sup>2</sup> {stretch}", "{stretch}"
+_STRETCH = "(1 + {body.curvature} {x}) (1 + 2 {body.curvature} {x}) {x}", "{x}"
+_RATE = "(1 + 2 {body.curvature} {x})<sup>2</sup> {v}", "{v}"
 _BESIDE = (
     "{body.cubic_stiffness} {x}<sup>3</sup>",
     "{body.amplitude_damping} {x}<sup>2</sup> {v}",
     "{body.fractional.coefficient} <i>D</i><sup>{body.fractional.order}</sup> {x}",
 )
-_STRETCH = "(1 + {body.curvature} {x}) (1 + 2 {body.curvature} {x}) {x}", "{x}"
-_RATE = "(1 + 2 {body.curvature} {x})<sup>2</sup> {v}", "{v}"
 _NORMAL = "{normal_load}", "{mass} {gravity}"
 _SHAKEN = (
     "{@unbalance} {frequency}<sup>2</sup> {wave}",
@@ -41,7 +34,7 @@ _SHAKEN = (
     "{@displacement_amplitude} {pace} {wave}",
     "{@acceleration_amplitude} / ({pace}) {wave}",
 )
-"""Forms of each term; @ stands for the part of the scene that has the letters."""
+"""Forms of each term; @: the part of the scene that has the letters; ?: a factor that may be left out."""
 
 
 class Letters(NamedTuple):
@@ -71,13 +64,14 @@ class Letters(NamedTuple):
         """Write the first of these forms whose letters are all known; nothing where none is."""
         known = {**self.known, **others}
         for form in (each.replace("@", part) for each in forms):
+            form = re.sub(r"{([^}]+)\?} ", lambda key: f"{{{key[1]}}} " if known.get(key[1]) else "", form)
             if all(known.get(key) for key in re.findall("{(.+?)}", form)):
                 return Markup(re.sub("{(.+?)}", lambda key: known[key[1]], form))
         return Markup("")
 
     def shaken(self, part: str) -> Markup:
         """What a part of the scene adds along the axis: its size times its waveform, turned by its direction."""
-        pace = self.term("{@frequency_ratio} {frequency}", "{frequency}", part=part)
+        pace = self.term("{@frequency_ratio?} {frequency}", part=part)
         angle = self.term("{pace} {t} + {@phase}", "{pace} {t}", part=part, pace=pace)
         wave = self.term("{@waveform}({angle})", "sin({angle})", part=part, angle=angle)
         terms = [self.term(*_SHAKEN, part=part, wave=wave, pace=pace), self.term("{@offset}", part=part)]

@@ -101,32 +101,29 @@ def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
 
 def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
     """One of the table; lines_in: the number of the figure whose caption says what lines mean, 0 for its own."""
-    family, maps = run.figures.family, run.figures.maps
+    family, maps, table = run.figures.family, run.figures.maps, run.figures.table
     assert family is not None
     axes, columns = run.figures.axes_of(name) if name in run.figures.columns else ([], [])
-    over = Markup(" and ").join(map(word_html, axes))
-    shown = Markup(", ").join(map(word_html, columns))
+    over, shown = Markup(" and ").join(map(word_html, axes)), Markup(", ").join(map(word_html, columns))
     shown = Markup(shown[:1].upper() + shown[1:])
     if maps is None:
-        told = [Markup("{} against {}").format(shown, over) if columns else _described(run, name)]
+        told = Markup("{} against {}").format(shown, over) if columns else _described(run, name)
         drawn = [each for each in family.curves if name != "differences" or each.law != run.figures.reference]
-        lines = list(_lines(replace(family, curves=drawn)))
+        lines = [*_lines(replace(family, curves=drawn))]
     else:
-        told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
-        names = (joined_values(run.figures.table[name].unique()) for name in ("law", "method"))
-        lines = [Markup("Laws: {}; methods: {}").format(*names)]
-    if not lines_in:
-        told += [*lines, *_held_and_missing(run)]
-    elif maps is None:
-        told.append(Markup(f"Lines as in Figure {lines_in}"))
-    known = {column: run.figures.table[column].dropna() for column in columns}
-    spans = " ".join(
-        f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
-        for column, found in known.items()
-    )
+        told = Markup("{} over {}, in shades with lines of equal value").format(shown, over)
+        lines = [
+            Markup("Laws: {}; methods: {}").format(
+                *(joined_values(table[each].unique()) for each in ("law", "method"))
+            )
+        ]
+    same = [Markup(f"Lines as in Figure {lines_in}")] if maps is None else []
+    caption = Markup(". ").join([told, *(same if lines_in else [*lines, *_held_and_missing(run)])])
+    ends = {word_html(column).striptags(): (table[column].min(), table[column].max()) for column in columns}
+    spans = "".join(f" {words}: from {low:.4g} to {high:.4g}." for words, (low, high) in ends.items())
     beside = maps is not None and name == "mean_friction" and run.figures.error_seen
     pictures = len(family.panels if maps is None else maps.pictures) * (max(1, len(columns)) + beside)
-    return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", pictures == 1)
+    return _picture(run, name, caption + ".", spans, pictures == 1)
 
 
 def _lines(family: Family) -> Iterator[Markup]:

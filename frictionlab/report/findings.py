@@ -62,30 +62,22 @@ SHAPE_HEADS = {
     "not_unique_to": "not unique to",
 }
 """Columns of ``curves.csv`` that are shown, and their heads."""
-_OF_CURVES = "status", "mean_friction", "mean_friction_N", "error", "error_N", "error_kind"
 
 
 def curves_grid(run: Facts) -> Grid:
     """One line per curve: everything equal but belt speed."""
-    narrow = run.table[[name for name in run.table if name in (run.speed, *_OF_CURVES)]]
+    in_si = "mean_friction_N" in run.table
     mean = Markup("mean friction {}, least … greatest").format(symbol_html("mean_friction"))
-    told: dict[Cell, Callable[[pd.DataFrame], Cell]] = {
-        "points": lambda rows: statuses(rows).replace("_", " "),
-        mean: mean_span,
-        "mean friction force [N]": lambda rows: (
-            mean_span(rows, unit="_N") if "mean_friction_N" in rows else ""
-        ),
-        "largest error": lambda rows: size(rows["error"].max()),
-        "at": lambda rows: _worst(run, rows[rows["error"].notna()]),
-        "kind of error": lambda rows: joined_values(rows["error_kind"].dropna().unique()),
-        "errors above the tolerance": lambda rows: _count_if_any(above_tolerance(run, rows)),
+    columns = whose(run.curves) | {
+        "points": lambda curve: statuses(curve.rows).replace("_", " "),
+        mean: lambda curve: mean_span(curve.rows),
+        "mean friction force [N]": lambda curve: mean_span(curve.rows, unit="_N") if in_si else "",
+        "largest error": lambda curve: size(curve.rows["error"].max()),
+        "at": lambda curve: _worst(run, curve.rows[curve.rows["error"].notna()]),
+        "kind of error": lambda curve: joined_values(curve.rows["error_kind"].dropna().unique()),
+        "errors above the tolerance": lambda curve: _count_if_any(above_tolerance(run, curve.rows)),
     }
-    columns = {head: _of_rows(narrow, tell) for head, tell in told.items()}
-    return grid("Curves: everything equal but belt speed", whose(run.curves) | columns, run.curves, "curves")
-
-
-def _of_rows(table: pd.DataFrame, tell: Callable[[pd.DataFrame], Cell]) -> Callable[[CurveRows], Cell]:
-    return lambda curve: tell(table.iloc[curve.places])
+    return grid("Curves: everything equal but belt speed", columns, run.curves, "curves")
 
 
 def _worst(run: Facts, known: pd.DataFrame) -> Cell:

@@ -68,21 +68,16 @@ def units_told(study: Study) -> Markup:
 
 def scene_grid(study: Study) -> Grid:
     """Every value of the scene, but for what swept ones run over."""
-    rows = [
-        [
-            *_named(shown_name(study, name)),
-            "swept" if name in study.sweep else _told_value(study, name, value),
-        ]
-        for name, value in given_of(study).items()
-    ]
+    given = given_of(study).items()
+    rows = [[*_named(shown_name(study, name)), _told_value(study, name, value)] for name, value in given]
     return grid("The scene", in_order("quantity", "symbol", "value"), rows)
 
 
 def _told_value(study: Study, name: str, value: Any) -> Cell:
-    told = number(value / study.units[name].size if name in study.units else value)
-    return (
-        f"{told}, taken from the others, to scale nondimensional columns" if is_taken(study, name) else told
-    )
+    if name in study.sweep:
+        return "swept"
+    taken = ", taken from the others, to scale nondimensional columns" if is_taken(study, name) else ""
+    return f"{number(value / study.units[name].size if name in study.units else value)}{taken}"
 
 
 def is_taken(study: Study, name: str) -> bool:
@@ -120,24 +115,26 @@ def values_listed(values: Sequence[GridValue]) -> str:
     return f"{number(values[0])} … {number(values[-1])}, {len(values)} values{told}"
 
 
+_OF_CHOICES = "kind", "what it is", "parameters"
+
+
 def laws_grid(study: Study) -> Grid:
     """The laws, what each is, and their parameters."""
-    swept = {law.label: dict.fromkeys(study.swept_parameters(law), "swept") for law in study.laws}
+    said, laws = study.in_words["law"], study.laws
+    given = [law.parameters | dict.fromkeys(study.swept_parameters(law), "swept") for law in laws]
     rows = [
-        _choice(study.in_words["law"][law.label], law.kind, law_text(law), law.parameters | swept[law.label])
-        for law in study.laws
+        _choice(said[law.label], law.kind, law_text(law), own) for law, own in zip(laws, given, strict=True)
     ]
-    return grid("The friction laws", in_order("law", "kind", "what it is", "parameters"), rows)
+    return grid("The friction laws", in_order("law", *_OF_CHOICES), rows)
 
 
 def methods_grid(study: Study) -> Grid:
     """The methods, what each is, and their parameters."""
     said = study.in_words["method"]
     rows = [
-        _choice(said[each.label], each.name, method_text(each.name), each.parameters)
-        for each in study.methods
+        _choice(said[way.label], way.name, method_text(way.name), way.parameters) for way in study.methods
     ]
-    return grid("The methods", in_order("method", "kind", "what it is", "parameters"), rows)
+    return grid("The methods", in_order("method", *_OF_CHOICES), rows)
 
 
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
@@ -150,20 +147,24 @@ def sweep_grid(study: Study) -> Grid:
     """What is swept, and over what; of several that advance together, with which."""
     rows: list[list[Cell]] = []
     for axis in study.axes:
-        first, *_ = axis.values
+        first, *_ = (_sweep_name(study, path) for path in axis.values)
         for path, values in axis.values.items():
-            scale = study.units.get(_column(path), ShownUnit("")).size
-            shown = [value / scale if isinstance(value, float) else value for value in values]
-            name, told, along = _sweep_name(study, path), values_listed(shown), study.ranges.get(path)
-            if path != first:
-                name = Markup("{}, together with {}").format(name, _sweep_name(study, first))
-            if isinstance(along, SpeedRange):
-                ends = number(along.start / scale), number(along.stop / scale)
-                told = f"{ends[0]} … {ends[1]}, {CHOSEN.format(number(along.within))}"
-            rows.append([name, path, told])
-    return grid(
-        "The sweep: every combination of these is a point", in_order("quantity", "key", "values"), rows
-    )
+            name = _sweep_name(study, path)
+            if name != first:
+                name = Markup("{}, together with {}").format(name, first)
+            rows.append([name, path, _sweep_values(study, path, values)])
+    columns = in_order("quantity", "key", "values")
+    return grid("The sweep: every combination of these is a point", columns, rows)
+
+
+def _sweep_values(study: Study, path: str, values: Sequence[GridValue]) -> str:
+    scale, along = study.units.get(_column(path), ShownUnit("")).size, study.ranges.get(path)
+    if isinstance(along, SpeedRange):
+        start, stop, within = (
+            number(each) for each in (along.start / scale, along.stop / scale, along.within)
+        )
+        return f"{start} … {stop}, {CHOSEN.format(within)}"
+    return values_listed([value / scale if isinstance(value, float) else value for value in values])
 
 
 def _sweep_name(study: Study, path: str) -> Cell:

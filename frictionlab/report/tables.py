@@ -112,16 +112,11 @@ def grid(
 
     columns: heads, and what is told of a thing below each. what: the things are; file: has all of them.
     """
-    shown = [[minus(cell(each)) for cell in columns.values()] for each in of[:MOST_ROWS]]
-    kept = [place for place in range(len(columns)) if any(row[place] for row in shown)]
-    left = len(of) - len(shown)
+    cells = {head: [minus(cell(each)) for each in of[:MOST_ROWS]] for head, cell in columns.items()}
+    kept = {head: told for head, told in cells.items() if any(told)}
+    left = max(0, len(of) - MOST_ROWS)
     below = f"... and {left} more {what}, all of them in {file}" if left else ""
-    return Grid(
-        caption,
-        [[*columns][place] for place in kept],
-        [[row[place] for place in kept] for row in shown],
-        below,
-    )
+    return Grid(caption, [*kept], [*zip(*kept.values(), strict=True)], below)
 
 
 def in_order(*heads: Cell) -> dict[Cell, Callable[[Any], Cell]]:

@@ -184,20 +184,15 @@ def write_explorer(file: Path, saved: Results | None = None) -> Path:
 
 def explorer(saved: Results | None = None) -> str:
     """The page as text. Raises FolderError."""
-    data = None if saved is None else run_data(saved)
-    scripts = ["address.js", "solver.js", "chart.js", "coulomb.js", *([] if data is None else ["run.js"])]
-    values = {
-        "generator": f"frictionlab {__version__}",
-        "title": TITLE,
-        "style": _part("page.css"),
-        "scene": OWN_SCENE if saved is None else str(scene_told(saved.study)),
-        "run": ""
-        if saved is None
-        else _filled("run.html", {"title": escape(saved.title), "sentence": _sentence(saved)}),
-        "data": "" if data is None else _embedded(data),
-        "script": "\n".join(map(_part, scripts)),
-    }
-    return _filled("page.html", values)
+    scripts = ["address.js", "solver.js", "chart.js", "coulomb.js"]
+    values = {"generator": f"frictionlab {__version__}", "title": TITLE, "style": _part("page.css")}
+    of_run = {"scene": OWN_SCENE, "run": "", "data": ""}
+    if saved is not None:
+        scripts.append("run.js")
+        told = {"title": escape(saved.title), "sentence": _sentence(saved)}
+        of_run = {"scene": str(scene_told(saved.study)), "run": _filled("run.html", told)}
+        of_run["data"] = _embedded(run_data(saved))
+    return _filled("page.html", values | of_run | {"script": "\n".join(map(_part, scripts))})
 
 
 def _sentence(saved: Results) -> str:
@@ -222,7 +217,6 @@ def _filled(name: str, values: dict[str, str]) -> str:
 
 def _embedded(data: dict[str, Any]) -> str:
     """Data as a script element that nothing in it can end."""
-    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace(
-        "<", "\\u003c"
-    )
-    return f'<script type="application/json" id="run-data">{text}</script>'
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    safe = text.replace("<", "\\u003c")
+    return f'<script type="application/json" id="run-data">{safe}</script>'

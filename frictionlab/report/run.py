@@ -516,11 +516,9 @@ def sweep(
     >>> len(found.table)
     4
     """
-    told = {
-        "tolerance": tolerance,
-        "columns": columns if columns is None or isinstance(columns, str) else list(columns),
-    }
-    return run(Study.of(scene, laws, methods, over, **told), executor=executor, progress=progress)
+    asked = columns if columns is None or isinstance(columns, str) else list(columns)
+    study = Study.of(scene, laws, methods, over, tolerance=tolerance, columns=asked)
+    return run(study, executor=executor, progress=progress)
 
 
 _COEFFICIENTS = "law.mu", "law.mu_kinetic", "law.mu_static"

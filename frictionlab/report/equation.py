@@ -128,17 +128,3 @@ def _slip(study: Study, letters: Letters) -> Markup:
     less = [letters.term("{belt_speed}") if letters.axis == 1 else "", letters.shaken("belt_vibration.")]
     told = Markup(" \N{MINUS SIGN} ").join([first, *filter(None, less)]).strip()
     return Markup("<i>v</i><sub>{}</sub> = {}").format(letters.axis, told or "0")
-
-
-def letters_sentence(study: Study) -> str:
-    """Say what those letters of the equations are that no table of the page names."""
-    told = ["T is the friction coefficient of the law, along the slip velocity v"]
-    if study.scene.degrees_of_freedom:
-        told.append("a mass that sticks has v = 0")
-    if any("<i>w</i>" in line for line in equations(study)):
-        told.append("w is the waveform")
-    if "receptance" in study.scene.body_terms:
-        told.append("H is the receptance of the table, harmonic by harmonic")
-    if study.scene.dimensional is not None:
-        told.append("forces are in N, lengths in m, t in s")
-    return f"Numbers of letters are in the table below; {'; '.join(told)}."

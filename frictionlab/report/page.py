@@ -17,9 +17,11 @@ from markupsafe import Markup
 
 from frictionlab import __version__
 from frictionlab.report import findings, question
+from frictionlab.report import sentences as say
 from frictionlab.report.answer import paragraphs
-from frictionlab.report.equation import equations, letters_sentence
+from frictionlab.report.equation import equations
 from frictionlab.report.facts import Facts
+from frictionlab.report.sentences import told
 from frictionlab.report.sources import bibtex, published
 from frictionlab.report.tables import Cell, Grid, grid, in_order, number, size
 from frictionlab.runner.folder import write_page
@@ -60,6 +62,7 @@ def report(saved: Results, drawn: FigureData | None = None) -> str:
         from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
 
         shown = pictures(run)
+    lines = equations(saved.study)
     tables = {"found": findings, "asked": question, "versions": _versions(saved), "runs": _runs(saved)}
     again = {"commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN, "bibtex": bibtex([saved])}
     return rendered(
@@ -69,8 +72,8 @@ def report(saved: Results, drawn: FigureData | None = None) -> str:
         run=run,
         pictures=shown,
         paragraphs=paragraphs(run),
-        equations=equations(saved.study),
-        letters=letters_sentence(saved.study),
+        equations=lines,
+        letters=told(say.LETTERS, " ".join(lines)),
         references=published(run.cited),
         yaml=yaml_text(saved.study.resolved()),
         **tables,

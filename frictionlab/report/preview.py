@@ -9,11 +9,10 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.report.page import rendered
-from frictionlab.report.tables import Cell, grid, number
+from frictionlab.report.tables import Cell, grid, number, word_html
 from frictionlab.runner.summary import mean_span, statuses
 from frictionlab.runner.table import swept_inputs
-from frictionlab.scene.dimensional import without_unit
-from frictionlab.values.columns import SHOWN_IN, belt_speed
+from frictionlab.values.columns import belt_speed
 
 MOST_CURVES = 20
 WIDTH, HEIGHT = 120.0, 28.0
@@ -25,7 +24,7 @@ def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:
     keys = ["law", "method", *swept_inputs(table)]
     groups = [rows for _, rows in table.groupby(keys, sort=False, dropna=False)]
     columns: dict[Cell, Callable[[pd.DataFrame], Cell]] = {
-        **{_head(name): partial(_value, name) for name in keys},
+        **{word_html(name): partial(_value, name) for name in keys},
         "mean friction": _drawing,
         "least … greatest": mean_span,
         "shape": lambda rows: _shape(rows.iloc[0], curves),
@@ -38,12 +37,6 @@ def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:
 
 def _value(name: str, rows: pd.DataFrame) -> Cell:
     return number(rows[name].iloc[0])
-
-
-def _head(name: str) -> str:
-    """An input without what all inputs of a scene begin with, and its unit."""
-    inside, _, unit = name.removeprefix("scene.").partition(SHOWN_IN)
-    return f"{without_unit(inside.removeprefix('dimensional.'))} [{unit}]" if unit else inside
 
 
 def _shape(row: pd.Series, curves: pd.DataFrame) -> str:

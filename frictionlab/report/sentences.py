@@ -199,3 +199,20 @@ SHAKEN: Sentences = {
         given.get("contact") == "swept"
     ),
 }
+
+# The equations of a scene
+
+
+def has_letter(*letters: str) -> Callable[[str], bool]:
+    """Check for equations with one of these letters."""
+    return lambda equations: any(f"<i>{letter}</i>" in equations for letter in letters)
+
+
+LETTERS: Sentences = {
+    "v is the slip velocity.": has_letter("v"),
+    "T is the friction coefficient of the law along it; a mass that sticks has v = 0.": has_letter("T"),
+    "w is the waveform.": has_letter("w"),
+    "H is the receptance of the table, harmonic by harmonic.": has_letter("H"),
+    "Forces are in N, lengths in m, t in s.": has_letter("M", "t"),
+    "Other letters have their numbers in the table below.": bool,
+}

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from fig_4b import GIVEN, over_speeds
 
-from frictionlab.report.equation import equations, letters_sentence
+from frictionlab.report import sentences as say
+from frictionlab.report.equation import equations
 from frictionlab.study.load import parse_study
 from frictionlab.study.study import Study
 
@@ -97,8 +98,7 @@ def test_equations_have_a_letter_for_each_input_that_is_not_zero(wanted: str) ->
     study = study_of(EQUATIONS[wanted])
 
     assert told(study) == wanted
-    assert ("w is the waveform" in letters_sentence(study)) == ("w(" in wanted)
-    assert ("forces are in N" in letters_sentence(study)) == (study.scene.dimensional is not None)
+    assert ("Forces" in say.told(say.LETTERS, " ".join(equations(study)))) == bool(study.scene.dimensional)
 
 
 def test_what_is_swept_has_its_letter_where_the_study_has_zero() -> None:

@@ -6,7 +6,7 @@ Symbols and words of inputs and columns as HTML: the mathtext of the figures, wi
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from html.entities import html5
 from operator import itemgetter
@@ -19,14 +19,22 @@ from frictionlab.scene.waveforms import told
 from frictionlab.values.columns import symbol, typeset, unit_shown, word
 from frictionlab.values.quantities import Written
 
-_RENAMED = {"varphi": "phi", "varepsilon": "epsilon"}  # what TeX calls so
+_RENAMED = {"varphi": "phi", "varepsilon": "epsilon", "infty": "infin"}  # what TeX calls so
 _ACCENTS = {"bar": "\u0304", "hat": "\u0302", "dot": "\u0307", "tilde": "\u0303"}
-_LEVELS = {"_": "sub", "^": "sup"}
-_TOKEN = re.compile(
-    r"\\mathrm\{(?P<upright>[^}]*)\}"
-    r"|\\(?P<accent>bar|hat|dot|tilde)\s*(?:\{(?P<braced>[^}]*)\}|(?P<under>\\[A-Za-z]+|\w))"
-    r"|\\(?P<name>[A-Za-z]+)|\{(?P<group>[^}]*)\}|(?P<level>[_^])|(?P<plain>.)"
-)
+_LEVELS = {"_": "<sub>{}</sub>", "^": "<sup>{}</sup>"}
+_AS_HTML: dict[str, Callable[[re.Match[str]], str]] = {
+    r"\\(bar|hat|dot|tilde)\s*(?:\{([^}]*)\}|(\\[A-Za-z]+|\w))": lambda found: (
+        (found[2] or found[3]) + _ACCENTS[found[1]]
+    ),
+    r"\\(?!mathrm)([A-Za-z]+)": lambda found: html5.get(f"{_RENAMED.get(found[1], found[1])};", found[1]),
+    r"([_^])(?:\{([^}]*)\}|(\\mathrm\{[^}]*\}|.))": lambda found: _LEVELS[found[1]].format(
+        found[2] or found[3]
+    ),
+    r"\\mathrm\{([^}]*)\}|(<[^>]*>|&\w+;)|([^\W\d_][\u0300-\u036f]*)": lambda found: (
+        found[1] or found[2] or f"<i>{found[3]}</i>"
+    ),
+}
+"""Patterns of mathtext and what stands for them: accents, names of letters, levels, then letters in italics."""
 
 
 @cache
@@ -53,34 +61,10 @@ def html(text: str) -> Markup:
 
 
 def _math(text: str) -> Markup:
-    shown, level = Markup(""), ""
-    for token in _TOKEN.finditer(text):
-        if token["level"]:
-            level = _LEVELS[token["level"]]
-            continue
-        atom = _atom(token)
-        shown += Markup("<{0}>{1}</{0}>").format(Markup(level), atom) if level else atom
-        level = ""
-    return shown
-
-
-def _atom(token: re.Match[str]) -> Markup:
-    if token["upright"] is not None:
-        return escape(token["upright"])
-    if token["group"] is not None:
-        return _math(token["group"])
-    if token["accent"]:
-        return _italic("".join(_letters(token["braced"] or token["under"])) + _ACCENTS[token["accent"]])
-    return _italic("".join(_letters(token[0])))
-
-
-def _letters(text: str) -> Iterator[str]:
-    for name, plain in re.findall(r"\\([A-Za-z]+)|(.)", text):
-        yield html5.get(f"{_RENAMED.get(name, name)};", name) or plain
-
-
-def _italic(text: str) -> Markup:
-    return Markup("<i>{}</i>").format(text) if text[:1].isalpha() else escape(text)
+    shown = str(escape(text))
+    for pattern, written in _AS_HTML.items():
+        shown = re.sub(pattern, written, shown)
+    return Markup(shown)
 
 
 Cell = str | Markup

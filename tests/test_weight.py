@@ -16,7 +16,7 @@ LIMITS = {
     "laws": 686,
     "methods": 8034,
     "motion": 4596,
-    "report": 1433,
+    "report": 1422,
     "runner": 4070,
     "scene": 1842,
     "study": 2649,

@@ -1,4 +1,4 @@
-"""The first three paragraphs of a report: who is highest where, how the curves bend, what needs attention."""
+"""First three paragraphs of a report: who is highest where, how the curves bend, what needs attention."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ MOST_VALUES = 4
 
 
 def paragraphs(run: Facts) -> list[Markup]:
-    """Three on a run: its means, the shapes of its curves, what needs attention."""
+    """Write three paragraphs on a run: its means, the shapes of its curves, what needs attention."""
     return [means_told(run), shapes_told(run), attention_told(run)]
 
 
@@ -86,7 +86,7 @@ def _pair(sentences: say.Sentences, pair: Difference, of_law: str = "") -> Marku
 
 
 def _of_methods(run: Facts) -> Iterator[Markup]:
-    """Where the methods of one law differ most; errors of reduced models beside which no full answers stand."""
+    """Tell where the methods of one law differ most; errors of reduced models beside which no full answers stand."""
     if run.method_pairs and run.table["law"].nunique() == 1:
         yield _pair(say.METHODS, max(run.method_pairs, key=lambda each: (each.apart > 0, abs(each.value))))
     rows = run.table[run.table["method"].isin(run.reduced) & run.table["error"].notna()]
@@ -97,7 +97,7 @@ def _of_methods(run: Facts) -> Iterator[Markup]:
 
 
 def _curve(run: Facts, best: pd.DataFrame, along: str) -> Markup:
-    """Between what the mean friction of one law lies, and where."""
+    """Tell between what the mean friction of one law lies, and where."""
     rows = best.sort_values(along, kind="stable").set_index(along, drop=False)
     names = dict.fromkeys([*swept_inputs(best), along if best[along].nunique() > 1 else run.speed])
     before, after = say.passes_zero(rows) or (0, 0)
@@ -112,7 +112,7 @@ def _curve(run: Facts, best: pd.DataFrame, along: str) -> Markup:
 
 
 def _ranked(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
-    """Who is highest where, and how far apart the highest and the lowest are at most."""
+    """Tell who is highest where, and how far apart the highest and the lowest are at most."""
     names, count = [*map(named, ranking.ranked)], len(ranking.first)
     speeds = list(ranking.points) == [along] and "belt_speed" in along
     everywhere = f" at all {counted(count, 'belt speed' if speeds else 'point')}" if count > 1 else ""
@@ -129,7 +129,7 @@ def _ranked(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
 
 
 def _apart(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
-    """The highest and the lowest where they are furthest apart; of many any from the reference law, by settings."""
+    """Tell where highest and lowest are furthest apart; of many, where one is from the reference law."""
     names, laws = [*map(named, ranking.ranked)], [each["law"] for each in ranking.ranked]
     in_short = say.is_won(ranking) or say.changes(ranking)
     held = len({*laws}) > 2 and laws.count(run.figures.reference) == 1 and not in_short
@@ -185,7 +185,7 @@ def _by_shape(curves: Sequence[CurveRows]) -> list[list[CurveRows]]:
 
 
 def _end(run: Facts, found: Sequence[CurveRows]) -> Markup:
-    """Where slip stops reversing: one belt speed for all, or between which; those known to more than themselves."""
+    """Tell where slip stops reversing: at one belt speed, or between which; of ends known to some digits."""
     known = [curve for curve in found if len(say.known_ends(curve.rows))]
     ends = [curve.measure("reversal_end") for curve in known]
     if not ends:
@@ -198,7 +198,7 @@ def _end(run: Facts, found: Sequence[CurveRows]) -> Markup:
 
 
 def _verdicts(run: Facts, curves: Sequence[CurveRows]) -> list[CurveRows]:
-    """One for each law and set of swept values: of the first method that decides it, full ones first."""
+    """Select one for each law and set of swept values: of the first method that decides it, full ones first."""
     found: dict[tuple[str, ...], CurveRows] = {}
     for curve in sorted(curves, key=lambda curve: curve.method in run.reduced):
         first = found.setdefault(curve.of, curve)
@@ -279,7 +279,7 @@ def _rough_or_remarked(run: Facts) -> Iterator[Markup]:
 
 
 def _whose(run: Facts, rows: pd.DataFrame, points: str) -> Markup:
-    """How many points, and whose they are, where that is not everybody's."""
+    """Add whose the points are, where that is not everybody's."""
     by = {"law": "", "method": "by "}
     several = [name for name in by if 0 < rows[name].nunique() < run.table[name].nunique()]
     whose = [Markup("{}{}").format(by[name], listed([*rows[name].unique()])) for name in several]

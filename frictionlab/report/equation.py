@@ -1,4 +1,4 @@
-"""The equations of motion of a study, in the letters of its table of the scene, which has their numbers."""
+"""Equations of motion of a study, in the letters of its table of the scene, which has their numbers."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Letters(NamedTuple):
         return Markup("")
 
     def shaken(self, part: str) -> Markup:
-        """What a part of the scene adds along the axis: its size times its waveform, turned by its direction."""
+        """Tell what a part of the scene adds along the axis: its size times its waveform, turned by its direction."""
         pace = self.term("{@frequency_ratio?} {frequency}", part=part)
         angle = self.term("{pace} {t} + {@phase}", "{pace} {t}", part=part, pace=pace)
         wave = self.term("{@waveform}({angle})", "sin({angle})", part=part, angle=angle)

@@ -1,4 +1,4 @@
-"""What the explorer shows of a run: its curves with errors, the swept quantities that select among them.
+"""Explorer of a run: its curves with errors, the swept quantities that select among them.
 
 Also the scenes that the page's own solver takes for these curves.
 
@@ -34,7 +34,7 @@ Quantity = tuple[str, str]
 
 
 def run_data(saved: Results) -> dict[str, Any]:
-    """The curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
+    """Return the curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
     family = family_of(in_shown_units(saved.shown, saved.study.units))
     if family is None:
         raise FolderError(f"{saved.folder}: its study sweeps no number, so there is no curve to explore")
@@ -51,7 +51,7 @@ def run_data(saved: Results) -> dict[str, Any]:
 
 
 def _start(curves: list[dict[str, Any]], speed: float) -> dict[str, float] | None:
-    """What the sliders of the page's solver begin with: the first scene shown that it solves, to six digits."""
+    """Choose what the sliders of the page's solver begin with: the first scene that it solves, to six digits."""
     shown = (curve["coulomb"] for curve in curves if curve["coulomb"] and not any(curve["at"]))
     if (first := next(shown, None)) is None:
         return None
@@ -68,19 +68,19 @@ def label(name: str, law: str = "") -> str:
 
 
 def _has_numbers(curve: CurveData) -> bool:
-    """Whether any point can be drawn: a mean, or the range of one that is not unique."""
+    """Check whether any point can be drawn: a mean, or the range of one that is not unique."""
     return bool(curve.rows.reindex(columns=["mean_friction", "mean_low"]).notna().to_numpy().any())
 
 
 def _settings(curve: CurveData) -> dict[Quantity, float | str]:
-    """What selects a curve among those of its law and method."""
+    """List what selects a curve among those of its law and method."""
     given = [*curve.panel, *([] if curve.member is None else [curve.member])]
     told = {(name, curve.law if name.startswith("law.") else ""): value for name, value in given}
     return {quantity: value for quantity, value in told.items() if value is not None}
 
 
 def _swept(family: Family) -> dict[Quantity, list[float | str]]:
-    """The swept quantities beside the abscissa, each with its values: numbers ascending, words as they come."""
+    """List the swept quantities beside the abscissa, each with its values: numbers ascending, words as they come."""
     found: dict[Quantity, dict[float | str, None]] = {}
     for curve in family.curves:
         for quantity, value in _settings(curve).items():
@@ -99,7 +99,7 @@ def _curve(
     swept: dict[Quantity, list[float | str]],
     looks: list[tuple[str, str]],
 ) -> dict[str, Any]:
-    """One curve.
+    """Return the data of one curve.
 
     at: for each swept quantity the index of its value, None where the law does not have it. look: a number for each
     law and method, None where no point of the two can be drawn. coulomb: the scene for the page's solver, None where
@@ -131,7 +131,7 @@ def _numbers(column: pd.Series) -> list[float | None]:
 
 
 class PageScene(NamedTuple):
-    """One degree of freedom under one sine, as the page's solver takes it.
+    """Body of one degree of freedom under one sine, as the page's solver takes it.
 
     frequency, damping: of the scene, both > 0; friction: mu * normal load over the load's amplitude; mu: of sliding;
     limit: V_lin in the units of the curve's belt speeds.
@@ -145,7 +145,7 @@ class PageScene(NamedTuple):
 
 
 def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
-    """The scene of a curve over belt speed; None where it is none that the page solves.
+    """Return the scene of a curve over belt speed; None where it is none that the page solves.
 
     It solves a body along the belt, damped, under one sine, with one coefficient of sliding friction.
     """
@@ -183,7 +183,7 @@ def write_explorer(file: Path, saved: Results | None = None) -> Path:
 
 
 def explorer(saved: Results | None = None) -> str:
-    """The page as text. Raises FolderError."""
+    """Return the page as text. Raises FolderError."""
     scripts = ["address.js", "solver.js", "chart.js", "coulomb.js"]
     values = {"generator": f"frictionlab {__version__}", "title": TITLE, "style": _part("page.css")}
     of_run = {"scene": OWN_SCENE, "run": "", "data": ""}
@@ -196,7 +196,7 @@ def explorer(saved: Results | None = None) -> str:
 
 
 def _sentence(saved: Results) -> str:
-    """How many points of which laws and methods there are, as HTML."""
+    """Count the points, and name their laws and methods, as HTML."""
     table = saved.shown
     shown = counted(len(table), "point")
     of = f" of {saved.size}, spread over them" if len(table) < saved.size else ""

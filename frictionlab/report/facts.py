@@ -1,4 +1,4 @@
-"""What sentences and tables of a page are made from: a run, and what is read from its tables once."""
+"""Facts for sentences and tables of a page: a run, and what is read from its tables once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class CurveRows(NamedTuple):
-    """The rows of one law and method that differ in belt speed alone.
+    """Rows of one law and method that differ in belt speed alone.
 
     where: what else was swept, and its value. table, places: where the rows are; no curve of many holds them itself.
     """
@@ -36,12 +36,12 @@ class CurveRows(NamedTuple):
 
     @property
     def rows(self) -> pd.DataFrame:
-        """All of them."""
+        """Return all of them."""
         return self.table.iloc[self.places]
 
     @property
     def row(self) -> pd.Series:
-        """The first of them."""
+        """Return the first of them."""
         return self.table.iloc[self.places[0]]
 
     def measure(self, name: str) -> tuple[Any, Any]:
@@ -51,12 +51,12 @@ class CurveRows(NamedTuple):
 
     @property
     def of(self) -> tuple[str, ...]:
-        """The law and the values, which curves by other methods have, too."""
+        """Return the law and the values, which curves by other methods have, too."""
         return self.law, *map(str, self.where.values())
 
     @property
     def name(self) -> Markup:
-        """What tells the curve from the others of its law and method."""
+        """Name what tells the curve from the others of its law and method."""
         return settings(self.where)
 
 
@@ -69,7 +69,7 @@ class Facts:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """The result table, in the units in which it is shown, laws and methods in words."""
+        """Return the result table, in the units in which it is shown, laws and methods in words."""
         return self._shown(self.saved.shown)
 
     def _shown(self, table: pd.DataFrame) -> pd.DataFrame:
@@ -77,28 +77,28 @@ class Facts:
 
     @property
     def speed(self) -> str:
-        """The column of the belt speed, in the units given."""
+        """Return the column of the belt speed, in the units given."""
         return belt_speed(self.table.columns)
 
     @cached_property
     def swept(self) -> list[str]:
-        """What is swept besides belt speed."""
+        """List what is swept besides belt speed."""
         return swept_inputs(self.table)
 
     def where(self, row: pd.Series) -> dict[str, Any]:
-        """Where a point is: its belt speed, and what else is swept."""
+        """Tell where a point is: its belt speed, and what else is swept."""
         return {name: row[name] for name in (self.speed, *self.swept)}
 
     @cached_property
     def figures(self) -> FigureData:
-        """What its figures of the table are drawn of."""
+        """Return the data of the figures of its table."""
         from frictionlab.charts.figures import FigureData  # with matplotlib, which takes a second
 
         return self.drawn or FigureData.of(self.saved.study, self.saved.shown)
 
     @cached_property
     def reduced(self) -> frozenset[str]:
-        """Its methods that solve a simpler model, in words."""
+        """Return its methods that solve a simpler model, in words."""
         study = self.saved.study
         return frozenset(study.in_words["method"][each.label] for each in study.methods if each.is_reduced)
 
@@ -109,16 +109,16 @@ class Facts:
 
     @cached_property
     def cited(self) -> list[Cited]:
-        """Whom it draws on."""
+        """List the sources it draws on."""
         return sources(self.saved)
 
     @cached_property
     def curves(self) -> list[CurveRows]:
-        """The curves of the result table, in its order."""
+        """Return the curves of the result table, in its order."""
         return self.curves_of(self.table)
 
     def curves_of(self, table: pd.DataFrame) -> list[CurveRows]:
-        """Those of a table of this run, told apart by what is swept."""
+        """Return those of a table of this run, told apart by what is swept."""
         table = self._shown(table)
         told = [name for name in self.swept if name in table]
         groups = table.groupby(["law", "method", *told], sort=False, dropna=False).indices

@@ -1,4 +1,4 @@
-"""The figures of a run, inside the page, each with a caption made from the study."""
+"""Figures of a run, inside the page, each with a caption made from the study."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Picture(NamedTuple):
 
 
 def pictures(run: Facts) -> list[Picture]:
-    """The figures of a run, the one that answers its question first; one that is not in its folder has no address.
+    """Return the figures of a run, first the one that answers its question; one not in its folder has no address.
 
     The first caption says what lines mean and what is held fixed; the others lead to it. Those that only some tables
     have are there where they were drawn.
@@ -100,7 +100,7 @@ def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
 
 
 def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
-    """One of the table; lines_in: the number of the figure whose caption says what lines mean, 0 for its own."""
+    """Describe one of the table; lines_in: number of the figure whose caption says what lines mean, 0 for its own."""
     family, maps, table = run.figures.family, run.figures.maps, run.figures.table
     assert family is not None
     axes, columns = run.figures.axes_of(name) if name in run.figures.columns else ([], [])
@@ -142,7 +142,7 @@ def _lines(family: Family) -> Iterator[Markup]:
 
 
 def _held_and_missing(run: Facts) -> Iterator[Markup]:
-    """The values of the scene, no defaults, that all points share; how many points have no number but a mark."""
+    """List the values of the scene, no defaults, that all points share; count points with a mark for a number."""
     study = run.saved.study
     given = given_of(study, defaults=False).items()
     fixed = {name: value for name, value in given if name not in study.sweep and not is_taken(study, name)}

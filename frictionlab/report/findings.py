@@ -1,4 +1,4 @@
-"""What a run found, as tables: curves, pairs, onsets, points whole, models, verdicts, what is not plainly ok."""
+"""Tables of what a run found: curves, pairs, onsets, points whole, models, verdicts, what is not plainly ok."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ SHAPE_HEADS = {
 
 
 def curves_grid(run: Facts) -> Grid:
-    """One line per curve: everything equal but belt speed."""
+    """Return one line per curve: everything equal but belt speed."""
     in_si = "mean_friction_N" in run.table
     mean = Markup("mean friction {}, least … greatest").format(symbol_html("mean_friction"))
     columns = whose(run.curves) | {
@@ -89,12 +89,12 @@ def _count_if_any(which: pd.Series) -> str:
 
 
 def above_tolerance(run: Facts, rows: pd.DataFrame) -> pd.Series:
-    """Which rows have a larger error than asked for; of a long-time mean none is asked."""
+    """Select rows that have a larger error than asked for; of a long-time mean none is asked."""
     return (rows["error"] > run.saved.study.tolerance) & (rows["error_kind"] != "statistical")
 
 
 def onset_grid(run: Facts) -> Grid:
-    """The onsets of onsets.csv, each with its error, curve by curve; nothing where the study asks for none."""
+    """Return the onsets of onsets.csv, each with its error, curve by curve; nothing where the study asks for none."""
     if run.saved.shown_onsets is None:
         return NOTHING
     curves = run.curves_of(run.saved.shown_onsets)
@@ -108,7 +108,7 @@ def onset_grid(run: Facts) -> Grid:
 
 
 def shape_grid(run: Facts) -> Grid:
-    """The measures of curves.csv, each with its error, the verdict first; nothing where no curve has a shape."""
+    """Return the measures of curves.csv, each with its error, the verdict first; nothing without a shape."""
     table = run.saved.curves
     known = () if table is None else table.columns[table.notna().any()]
     own = [name for name in SHAPE_HEADS if name in known]
@@ -131,7 +131,7 @@ def _measure(name: str, curve: CurveRows) -> str:
 
 
 def why_missing(curves: pd.DataFrame) -> list[tuple[int, str]]:
-    """Why measures are missing: how many curves have each reason, and the reason, the commonest first."""
+    """List why measures are missing: how many curves have each reason, and the reason, the commonest first."""
     reasons = curves["reason"].dropna()
     kinds = [kind for _, kind in reasons.groupby(reasons.map(pattern), sort=False)]
     return [(len(kind), alike(kind)) for kind in sorted(kinds, key=len, reverse=True)]
@@ -174,7 +174,7 @@ def whole_grid(run: Facts) -> Grid:
 
 
 def _error_of(name: str) -> str:
-    """The column with the error of another."""
+    """Return the column with the error of another."""
     if name.startswith("mean_friction"):
         return name.replace("mean_friction", "error")
     return f"{name.removesuffix('_J')}_error_J" if name.endswith("_J") else f"{name}_error"
@@ -188,7 +188,7 @@ def _written(row: pd.Series, shown: Mapping[str, str], name: str) -> str:
 
 
 def models_grid(run: Facts) -> Grid:
-    """What produced the numbers: each model of the table, its sentence, and how many points it produced."""
+    """List what produced the numbers: each model of the table, its sentence, and how many points it produced."""
     models = _by_sentence(run.table, "method", run.table["model"])
     said = {model: model_in_sentences(model) for _, model, *_ in models}
     rows = [
@@ -199,7 +199,7 @@ def models_grid(run: Facts) -> Grid:
 
 
 def uniqueness_grid(run: Facts) -> Grid:
-    """How it is known of points that no start ends elsewhere, in sentences; by how many points."""
+    """Tell how it is known of points that no start ends elsewhere, in sentences; by how many points."""
     table, unique = run.table, run.table["unique"]
     proved = each_once(table["model"].fillna(""), why_unique_in_words)
     how = proved.where(unique == "proved", each_once(table["reason"], _how_tested))
@@ -219,7 +219,7 @@ def _by_sentence(table: pd.DataFrame, by: str, sentences: pd.Series) -> list[lis
 
 
 def _how_tested(reason: Any) -> str:
-    """Of the sentences of a reason the one on starts; nothing where there is none."""
+    """Find the sentence of a reason on starts; nothing where there is none."""
     return next(
         (each.removeprefix(SAYS_TESTED) for each in str(reason).split("; ") if each.startswith(SAYS_TESTED)),
         "",
@@ -227,7 +227,7 @@ def _how_tested(reason: Any) -> str:
 
 
 def verdicts_grid(verdicts: Sequence[Verdict]) -> Grid:
-    """What was expected and whether it is so, what failed first."""
+    """List what was expected and whether it is so, what failed first."""
     columns: dict[Cell, Callable[[Verdict], Cell]] = {
         "verdict": lambda verdict: VERDICTS[verdict.passed],
         "expectation: what was found": lambda verdict: verdict.sentence,
@@ -237,7 +237,7 @@ def verdicts_grid(verdicts: Sequence[Verdict]) -> Grid:
 
 
 def with_remark(run: Facts) -> pd.Series:
-    """Which rows are ok with something to note; no model's own error, nor that starts were tested."""
+    """Select rows that are ok with something to note; no model's own error, nor that starts were tested."""
     full, told = ~run.table["method"].isin(run.reduced), run.table["reason"].fillna(SAYS_TESTED)
     return (run.table["status"] == "ok") & full & ~told.str.startswith(SAYS_TESTED)
 

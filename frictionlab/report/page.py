@@ -1,4 +1,4 @@
-"""The page of a run and that of a folder of runs: HTML files that need nothing else, made of what folders hold.
+"""Page of a run and that of a folder of runs: HTML files that need nothing else, made of what folders hold.
 
 The page of a fit: sentences, the figure, how well each law fits, the numbers with their errors.
 """
@@ -56,7 +56,7 @@ def write_report(saved: Results, drawn: FigureData | None = None) -> Path:
 
 
 def report(saved: Results, drawn: FigureData | None = None) -> str:
-    """The page of a run."""
+    """Return the page of a run."""
     run, shown = Facts(saved, drawn), []
     if saved.study.sweep:
         from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
@@ -136,7 +136,7 @@ def write_index(folder: Path, runs: Sequence[Results]) -> Path:
 
 
 def index(folder: Path, runs: Sequence[Results]) -> str:
-    """The page of a folder of studies."""
+    """Return the page of a folder of studies."""
     from frictionlab.report.figures import address
 
     counts = sum((Counter(run.counts) for run in runs), Counter())
@@ -175,7 +175,7 @@ def write_fit_page(found: Any, path: Any, title: str = "") -> Path:
 
 
 def fit_page(found: Any, title: str, picture: str) -> str:
-    """The page as HTML."""
+    """Return the page as HTML."""
     laws, numbers = ([row for _, row in table.iterrows()] for table in (found.laws, found.table))
     return rendered(
         "fit.html",

@@ -40,7 +40,7 @@ def _value(name: str, rows: pd.DataFrame) -> Cell:
 
 
 def _shape(row: pd.Series, curves: pd.DataFrame) -> str:
-    """The verdict on the curve of a row; '' where it is on none."""
+    """Return the verdict on the curve of a row; '' where it is on none."""
     shared = [name for name in curves.columns if name in row.index and name not in ("reason", "model")]
     alike = curves[(curves[shared].fillna("") == row[shared].fillna("")).all(axis=1)]
     return "".join(alike.get("shape", pd.Series(dtype=str)).dropna().iloc[:1])

@@ -1,4 +1,4 @@
-"""What a study asks, in words and tables: scene, laws, methods, sweep."""
+"""Words and tables of what a study asks: scene, laws, methods, sweep."""
 
 from __future__ import annotations
 
@@ -81,23 +81,23 @@ def _told_value(study: Study, name: str, value: Any) -> Cell:
 
 
 def is_taken(study: Study, name: str) -> bool:
-    """Whether an input is the length scale that a scene has by itself."""
+    """Check whether an input is the length scale that a scene has by itself."""
     body = study.scene.dimensional
     return body is not None and name.endswith(".length_m") and body.length_m == own_length(body)
 
 
 def given_of(study: Study, defaults: bool = True) -> dict[str, Any]:
-    """The values of the scene by their columns, those that are defaults where they are asked for."""
+    """Return the values of the scene by their columns, those that are defaults where they are asked for."""
     return {f"scene.{path}": value for path, value in study.scene.given_values(defaults).items()}
 
 
 def shown_name(study: Study, name: str) -> str:
-    """The name of an input with the unit in which its numbers were written."""
+    """Return the name of an input with the unit in which its numbers were written."""
     return f"{name}{SHOWN_IN}{study.units[name].unit}" if name in study.units else name
 
 
 def _named(name: str) -> list[Cell]:
-    """The words of an input and its symbol; its path where it has none."""
+    """Return the words of an input and its symbol; its path where it has none."""
     if not symbol(name).startswith("$"):
         inside = without_shown_unit(name).removeprefix("scene.").removeprefix("dimensional.")
         return [inside.replace(".", " ").replace("_", " "), ""]
@@ -105,7 +105,7 @@ def _named(name: str) -> list[Cell]:
 
 
 def values_listed(values: Sequence[GridValue]) -> str:
-    """The values of a sweep: all words, all of a few numbers, else the ends and how many."""
+    """Return the values of a sweep: all words, all of a few numbers, else the ends and how many."""
     numbers = [value for value in values if isinstance(value, float | int)]
     if len(values) <= MOST_LISTED or len(numbers) < len(values):
         return ", ".join(number(value) if isinstance(value, float | int) else str(value) for value in values)
@@ -119,7 +119,7 @@ _OF_CHOICES = "kind", "what it is", "parameters"
 
 
 def laws_grid(study: Study) -> Grid:
-    """The laws, what each is, and their parameters."""
+    """Return the laws, what each is, and their parameters."""
     said, laws = study.in_words["law"], study.laws
     given = [law.parameters | dict.fromkeys(study.swept_parameters(law), "swept") for law in laws]
     rows = [
@@ -129,7 +129,7 @@ def laws_grid(study: Study) -> Grid:
 
 
 def methods_grid(study: Study) -> Grid:
-    """The methods, what each is, and their parameters."""
+    """Return the methods, what each is, and their parameters."""
     said = study.in_words["method"]
     rows = [
         _choice(said[way.label], way.name, method_text(way.name), way.parameters) for way in study.methods
@@ -138,13 +138,13 @@ def methods_grid(study: Study) -> Grid:
 
 
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
-    """Its words, its kind where that is another name, the first line of its text, its parameters with values."""
+    """Return its words, its kind if that is another name, the first line of its text, its parameters with values."""
     told = settings({f"law.{parameter}": value for parameter, value in parameters.items()})
     return [label, "" if name == label else name, text.partition("\n")[0], told]
 
 
 def sweep_grid(study: Study) -> Grid:
-    """What is swept, and over what; of several that advance together, with which."""
+    """List what is swept, and over what; of several that advance together, with which."""
     rows: list[list[Cell]] = []
     for axis in study.axes:
         first, *_ = (_sweep_name(study, path) for path in axis.values)
@@ -179,5 +179,5 @@ def _sweep_name(study: Study, path: str) -> Cell:
 
 
 def _column(path: str) -> str:
-    """The column of what is swept."""
+    """Return the column of what is swept."""
     return path if path.startswith("scene.") else f"law.{path.rpartition('.')[2]}"

@@ -1,4 +1,4 @@
-"""What a page's tables are made of, and how numbers and long lists are written in them.
+"""Tables of a page, and how numbers and long lists are written in them.
 
 Symbols and words of inputs and columns as HTML: the mathtext of the figures, with real letters.
 """
@@ -39,18 +39,18 @@ _AS_HTML: dict[str, Callable[[re.Match[str]], str]] = {
 
 @cache
 def symbol_html(name: str) -> Markup:
-    """The symbol of an input or column; for one without a symbol the last part of its path."""
+    """Return the symbol of an input or column; for one without a symbol the last part of its path."""
     return html(symbol(name))
 
 
 def word_html(name: str) -> Markup:
-    """The words of an input or column with its symbol and unit."""
+    """Return the words of an input or column with its symbol and unit."""
     return html(word(name))
 
 
 @cache
 def unit_html(name: str) -> Markup:
-    """The unit of an input or column with a space before it; nothing where it has none."""
+    """Return the unit of an input or column with a space before it; nothing where it has none."""
     return html(f" {unit_shown(name)}") if unit_shown(name) else Markup("")
 
 
@@ -115,7 +115,7 @@ def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
 
 
 def setting(name: str, value: Any, digits: int = 6) -> Markup:
-    """One input with its value and unit, on one line where it is short."""
+    """Return one input with its value and unit, on one line where it is short."""
     unit = "" if isinstance(value, Written) else unit_html(name)
     told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit)
     short = len(told.striptags()) <= SHORT_SETTING

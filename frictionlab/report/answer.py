@@ -12,7 +12,7 @@ from frictionlab.charts.sweeps import sweep_of
 from frictionlab.report import sentences as say
 from frictionlab.report.facts import CurveRows, Facts
 from frictionlab.report.findings import above_tolerance, why_missing, with_remark
-from frictionlab.report.sentences import told
+from frictionlab.report.sentences import tell
 from frictionlab.report.tables import (
     Cell,
     listed,
@@ -53,13 +53,13 @@ def means_told(run: Facts) -> Markup:
     """Tell who has the highest mean friction where, and by how much; of one alone, between what it lies."""
     best = best_rows(run.table)
     if best.empty:
-        return told(say.NO_MEANS, run.table)
+        return tell(say.NO_MEANS, run.table)
     if not (found := [*_models(run)]):
         along = sweep_of(run.table).along or run.speed
         ranking = ranking_of(run.table, along)
         found = [_curve(run, best, along)] if ranking is None else [*_ranked(run, ranking, along)]
         found += _of_methods(run)
-    silent = (told(say.SILENT, rows, law=law) for law, rows in run.table.groupby("law", sort=False))
+    silent = (tell(say.ON_SILENT, rows, law=law) for law, rows in run.table.groupby("law", sort=False))
     return Markup(" ").join(filter(None, [*found, *silent]))
 
 
@@ -77,23 +77,23 @@ def _models(run: Facts) -> Iterator[Markup]:
         whose = [(pair.law, pair.one) for pair in pairs]
         pairs = [pair for at, pair in enumerate(pairs) if whose.index(whose[at]) == at][:MOST_TOLD]
     of_law = " of {}" if run.table["law"].nunique() > 1 else ""
-    return (_pair(say.MODEL, pair, of_law.format(pair.law)) for pair in pairs)
+    return (_pair(say.ON_MODEL, pair, of_law.format(pair.law)) for pair in pairs)
 
 
 def _pair(sentences: say.Sentences, pair: Difference, of_law: str = "") -> Markup:
     far = _far(abs(pair.value), pair.error, pair.where)
-    return told(sentences, pair, one=f"{the(pair.one)}{of_law}", other=the(pair.other), far=far)
+    return tell(sentences, pair, one=f"{the(pair.one)}{of_law}", other=the(pair.other), far=far)
 
 
 def _of_methods(run: Facts) -> Iterator[Markup]:
     """Tell where the methods of one law differ most; errors of reduced models beside which no full answers stand."""
     if run.method_pairs and run.table["law"].nunique() == 1:
-        yield _pair(say.METHODS, max(run.method_pairs, key=lambda each: (each.apart > 0, abs(each.value))))
+        yield _pair(say.ON_METHODS, max(run.method_pairs, key=lambda each: (each.apart > 0, abs(each.value))))
     rows = run.table[run.table["method"].isin(run.reduced) & run.table["error"].notna()]
     for method, own in rows.groupby("method", sort=False):
         worst = own.loc[own["error"].idxmax()]
         far = _far(worst["error"], 0.0, run.where(worst))
-        yield told(say.OWN_ERROR, worst, one=the(str(method)), far=far)
+        yield tell(say.ON_OWN_ERROR, worst, one=the(str(method)), far=far)
 
 
 def _curve(run: Facts, best: pd.DataFrame, along: str) -> Markup:
@@ -108,7 +108,7 @@ def _curve(run: Facts, best: pd.DataFrame, along: str) -> Markup:
         slot: _far(row["mean_friction"], row["error"], {name: row[name] for name in names}, digits)
         for slot, row in ((slot, rows.iloc[place]) for slot, place in places.items())
     }
-    return told(say.CURVE, rows, law=rows["law"].iloc[0], points=counted(len(rows), "point"), **slots)
+    return tell(say.ON_CURVE, rows, law=rows["law"].iloc[0], points=counted(len(rows), "point"), **slots)
 
 
 def _ranked(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
@@ -123,7 +123,7 @@ def _ranked(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
     )
     everyone = listed(names) if len(names) <= MOST_TOLD else f"{len(names)} curves"
     slots = {"names": everyone, "winner": who[ranking.first[0]], "winners": winners}
-    yield told(say.RANKED, ranking, everywhere=everywhere, **slots)
+    yield tell(say.ON_RANKED, ranking, everywhere=everywhere, **slots)
     if not say.is_tied(ranking):
         yield from _apart(run, ranking, along)
 
@@ -134,16 +134,16 @@ def _apart(run: Facts, ranking: Ranking, along: str) -> Iterator[Markup]:
     in_short = say.is_won(ranking) or say.changes(ranking)
     held = len({*laws}) > 2 and laws.count(run.figures.reference) == 1 and not in_short
     against = laws.index(run.figures.reference) if held else None
-    group, places = say.FURTHEST if held else say.LAWS, ranking.points.to_dict("records")
+    group, places = say.ON_FURTHEST if held else say.ON_LAWS, ranking.points.to_dict("records")
     widest = ranking.widest(along, 0 if in_short else MOST_TOLD, against)
     if len(places) == 1:
-        group, places, widest = say.NEXT, [{}], [(0, ranking.first[0], ranking.second[0])]
+        group, places, widest = say.ON_NEXT, [{}], [(0, ranking.first[0], ranking.second[0])]
     for at, high, low in widest:
         one, other = (low, high) if high == against else (high, low)
         mean, error = ranking.mean[at], ranking.error[at]
         value, slack = mean[one] - mean[other], error[one] + error[other]
         slots = {"one": names[one], "other": names[other], "mean": with_error(mean[one], error[one])}
-        yield told(group, value, far=_far(value, slack, places[at]), **slots)
+        yield tell(group, value, far=_far(value, slack, places[at]), **slots)
 
 
 def _stretch(points: pd.DataFrame, start: int, stop: int) -> Markup:
@@ -158,19 +158,19 @@ def shapes_told(run: Facts) -> Markup:
     """Tell the shapes of the curves, and why some have none."""
     table = run.saved.curves
     if table is None or "shape" not in table or table.empty:
-        return told(say.NO_SHAPE, pd.DataFrame({"shape": []}))
+        return tell(say.NO_SHAPE, pd.DataFrame({"shape": []}))
     shaped, bare = run.curves_of(table[table["shape"].notna()]), table[table["shape"].isna()]
     found, reasons = _verdicts(run, shaped), [reason for _, reason in why_missing(bare)]
-    said = [told(say.BENDS, own[0].rows, who=_who(own, found)) for own in _by_shape(found)]
+    said = [tell(say.ON_BENDS, own[0].rows, who=_who(own, found)) for own in _by_shape(found)]
     said += _otherwise(run, shaped, found)
     if len(found) == 1:
         area = with_error(*found[0].rows[["shape_area", "shape_area_error"]].abs().iloc[0])
-        said.append(told(say.AREA, found[0].rows, area=area))
+        said.append(tell(say.ON_AREA, found[0].rows, area=area))
     without = f"{len(bare)} of {counted(len(table), 'curve')}"
     why = f"{reasons[0]}{', and other reasons' * (len(reasons) > 1)}" if reasons else "nothing says why"
-    said.append(told(say.NO_SHAPE, table, without=without, why=why))
+    said.append(tell(say.NO_SHAPE, table, without=without, why=why))
     if found:
-        said.append(told(say.ENDS, pd.concat(curve.rows for curve in found), end=_end(run, found)))
+        said.append(tell(say.ON_ENDS, pd.concat(curve.rows for curve in found), end=_end(run, found)))
     return Markup(" ").join(filter(None, said))
 
 
@@ -215,7 +215,7 @@ def _otherwise(run: Facts, curves: Sequence[CurveRows], found: Sequence[CurveRow
         others = [curve for curve in own if full[curve.of] not in ("undecided", _shape(curve))]
         for group in _by_shape(others):
             slots = {"model": the(method), "shape": _shape(group[0]), "who": _who(group, own)}
-            yield told(say.OTHERWISE, group[0].rows, **slots)
+            yield tell(say.ON_OTHERWISE, group[0].rows, **slots)
 
 
 def _who(own: Sequence[CurveRows], among: Sequence[CurveRows]) -> Markup | str:
@@ -247,15 +247,15 @@ def attention_told(run: Facts) -> Markup:
     saved, table = run.saved, run.table
     passed = [verdict.passed for verdict in saved.verdicts]
     held = {"failed": passed.count(False), "expected": counted(len(passed), "expectation")}
-    trouble = [*_unanswered(run), *_rough_or_remarked(run), told(say.FAILED, passed, **held)]
+    trouble = [*_unanswered(run), *_rough_or_remarked(run), tell(say.ON_FAILED, passed, **held)]
     needed = Markup("; ").join(filter(None, trouble))
-    first = told(say.NEEDED, needed, trouble=needed, points=counted(saved.size, "point"))
+    first = tell(say.ON_NEEDED, needed, trouble=needed, points=counted(saved.size, "point"))
     if needed:
         return first
     full = table[~table["method"].isin(run.reduced)]
     besides = ", but for what models leave out" if len(full) < len(table) else ""
-    errors = told(say.WELL, full, error=f"{full['error'].max():.1e}", besides=besides)
-    return Markup(" ").join(filter(None, [first, errors, told(say.HELD, passed, **held)]))
+    errors = tell(say.ON_WELL, full, error=f"{full['error'].max():.1e}", besides=besides)
+    return Markup(" ").join(filter(None, [first, errors, tell(say.ON_HELD, passed, **held)]))
 
 
 def _unanswered(run: Facts) -> Iterator[Markup]:
@@ -265,17 +265,17 @@ def _unanswered(run: Facts) -> Iterator[Markup]:
         points = _whose(run, rows, f"{run.saved.counts[status]} of {counted(run.saved.size, 'point')}")
         seen = rows.reindex(columns=["mean_low", "mean_high"])
         low, high = (number(each, IN_SHORT) for each in (seen["mean_low"].min(), seen["mean_high"].max()))
-        if clause := told(say.UNANSWERED, words, status=words, points=points):
-            yield clause + told(say.SEEN, rows, low=low, high=high)
+        if clause := tell(say.ON_UNANSWERED, words, status=words, points=points):
+            yield clause + tell(say.ON_SEEN, rows, low=low, high=high)
 
 
 def _rough_or_remarked(run: Facts) -> Iterator[Markup]:
     """Errors above the tolerance, and points that are ok with something else to note."""
     rough = above_tolerance(run, run.table) & ~run.table["method"].isin(run.reduced)
-    for sentences, which in ((say.ROUGH, rough), (say.REMARKS, with_remark(run) & ~rough)):
+    for sentences, which in ((say.ON_ROUGH, rough), (say.ON_REMARKS, with_remark(run) & ~rough)):
         rows = run.table[which]
         slots = {"error": f"{rows['error'].max():.2g}", "tolerance": f"{run.saved.study.tolerance:g}"}
-        yield told(sentences, rows, points=_whose(run, rows, counted(len(rows), "point")), **slots)
+        yield tell(sentences, rows, points=_whose(run, rows, counted(len(rows), "point")), **slots)
 
 
 def _whose(run: Facts, rows: pd.DataFrame, points: str) -> Markup:

@@ -28,7 +28,7 @@ from frictionlab.runner.words import counted
 from frictionlab.values.columns import is_belt_speed, word
 from frictionlab.values.units import in_shown_units
 
-RATIOS = "velocity_ratio", "normalized_friction"
+_RATIOS = "velocity_ratio", "normalized_friction"
 Quantity = tuple[str, str]
 """A swept input and the law whose parameter it is, "" for one of the scene."""
 
@@ -149,7 +149,7 @@ def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
 
     It solves a body along the belt, damped, under one sine, with one coefficient of sliding friction.
     """
-    if not is_belt_speed(abscissa) or any(name not in curve.rows for name in RATIOS):
+    if not is_belt_speed(abscissa) or any(name not in curve.rows for name in _RATIOS):
         return None
     scene = scene_of(curve.rows.iloc[0].to_dict())
     load = 0.0 if scene.drive is None else scene.drive.size(scene.frequency)

@@ -32,7 +32,7 @@ from frictionlab.runner.words import counted
 from frictionlab.values.columns import ALSO_IN_SI, RESULTS, SI, by_plain_names
 from frictionlab.values.printable import MOST_DIGITS, with_error
 
-NOTHING = Grid("", [], [])
+NOT_SHOWN = Grid("", [], [])
 """A table that is not shown."""
 FEW_ROWS = 4
 """A table of so few rows is shown whole."""
@@ -96,7 +96,7 @@ def above_tolerance(run: Facts, rows: pd.DataFrame) -> pd.Series:
 def onset_grid(run: Facts) -> Grid:
     """Return the onsets of onsets.csv, each with its error, curve by curve; nothing where the study asks for none."""
     if run.saved.shown_onsets is None:
-        return NOTHING
+        return NOT_SHOWN
     curves = run.curves_of(run.saved.shown_onsets)
     onsets = [curve._replace(places=[place]) for curve in curves for place in curve.places]
     columns = whose(curves) | {
@@ -113,7 +113,7 @@ def shape_grid(run: Facts) -> Grid:
     known = () if table is None else table.columns[table.notna().any()]
     own = [name for name in SHAPE_HEADS if name in known]
     if table is None or {*own} <= {"reversal_end", "reduction"}:
-        return NOTHING
+        return NOT_SHOWN
     curves, unit = run.curves_of(table), unit_html(run.speed)
     heads = [Markup("{}{}").format(SHAPE_HEADS[name], unit if name in ALSO_IN_SI else "") for name in own]
     columns = whose(curves) | {head: partial(_measure, name) for head, name in zip(heads, own, strict=True)}
@@ -160,7 +160,7 @@ def whole_grid(run: Facts) -> Grid:
     """
     table = run.table
     if len(table) > FEW_ROWS:
-        return NOTHING
+        return NOT_SHOWN
     shown = by_plain_names(table)
     in_si = [name for name in SI if name in shown]
     names = [*RESULTS, *in_si]

@@ -21,7 +21,7 @@ from frictionlab.report import sentences as say
 from frictionlab.report.answer import paragraphs
 from frictionlab.report.equation import equations
 from frictionlab.report.facts import Facts
-from frictionlab.report.sentences import told
+from frictionlab.report.sentences import tell
 from frictionlab.report.sources import bibtex, published
 from frictionlab.report.tables import Cell, Grid, grid, in_order, number, size
 from frictionlab.runner.folder import write_page
@@ -73,7 +73,7 @@ def report(saved: Results, drawn: FigureData | None = None) -> str:
         pictures=shown,
         paragraphs=paragraphs(run),
         equations=lines,
-        letters=told(say.LETTERS, " ".join(lines)),
+        letters=tell(say.ON_LETTERS, " ".join(lines)),
         references=published(run.cited),
         yaml=yaml_text(saved.study.resolved()),
         **tables,

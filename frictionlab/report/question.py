@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from frictionlab.report import sentences as say
-from frictionlab.report.sentences import told
+from frictionlab.report.sentences import tell
 from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, html, in_order, number, settings, symbol_html
 from frictionlab.scene.dimensional import without_unit
@@ -38,7 +38,7 @@ _SHAKEN = {
 
 def scene_told(study: Study) -> Markup:
     """Tell what kind of scene it is, what changes in time in it, and how."""
-    parts = [told(say.SCENE, study.scene), *(_shaken(study, path) for path in _SHAKEN)]
+    parts = [tell(say.ON_SCENE, study.scene), *(_shaken(study, path) for path in _SHAKEN)]
     return Markup(" ").join(filter(None, parts))
 
 
@@ -58,12 +58,12 @@ def _shaken(study: Study, path: str) -> Markup:
     wave = "in several waveforms" if given["waveform"] == "swept" else f"as {(part.waveform or SINE).words}"
     pace: dict[Any, str] = {None: "", 1.0: "", "swept": " at several frequencies"}
     often = pace[ratio] if ratio in pace else f" at {as_fraction(ratio)} times the frequency of the drive"
-    return told(say.SHAKEN, given, load=f"{what} {where}".strip(), where=where, wave=wave, often=often)
+    return tell(say.ON_SHAKEN, given, load=f"{what} {where}".strip(), where=where, wave=wave, often=often)
 
 
 def units_told(study: Study) -> Markup:
     """Tell in which units its numbers are."""
-    return told(say.UNITS, study.scene)
+    return tell(say.ON_UNITS, study.scene)
 
 
 def scene_grid(study: Study) -> Grid:

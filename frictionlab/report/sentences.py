@@ -18,7 +18,7 @@ MOST_STRETCHES = 4
 """Stretches of the axis, on each of which another is highest, that are told one by one."""
 
 
-def told(sentences: Sentences, of: Any, **slots: Any) -> Markup:
+def tell(sentences: Sentences, of: Any, **slots: Any) -> Markup:
     """Write those that are true of something; an article that begins one has a capital."""
     written = [Markup(words).format(**slots) for words, holds in sentences.items() if holds(of)]
     return Markup(" ").join(Markup(f"T{each[1:]}") if each.startswith("the ") else each for each in written)
@@ -45,7 +45,7 @@ def passes_zero(rows: pd.DataFrame) -> list[int]:
     return [*map(int, clear[turns[0] : turns[0] + 2])] if len(turns) else []
 
 
-CURVE: Sentences = {
+ON_CURVE: Sentences = {
     "The mean friction coefficient of {law} is {first}.": lambda rows: len(rows) == 1,
     "Mean friction of {law} is the same within its errors at all {points}: {first}.": (
         lambda rows: len(rows) > 1 and way(rows) == "flat"
@@ -77,7 +77,7 @@ def changes(ranking: Ranking) -> bool:
     return few and not (is_tied(ranking) or is_won(ranking))
 
 
-RANKED: Sentences = {
+ON_RANKED: Sentences = {
     "Of {names} the highest agree within errors{everywhere}.": is_tied,
     "Mean friction is highest for {winner}{everywhere}.": is_won,
     "Mean friction is highest for {winners}.": changes,
@@ -89,19 +89,19 @@ RANKED: Sentences = {
 
 # Two means at the point where they are furthest apart, or one with its error
 
-NEXT: Sentences = {"Its mean is {mean}, above {other}, the next, by {far}.": lambda value: value > 0.0}
-LAWS: Sentences = {"{one} is above {other} by up to {far}.": lambda value: value > 0.0}
-FURTHEST: Sentences = {"{one} is furthest from {other}, by {far}.": lambda value: value != 0.0}
-MODEL: Sentences = {
+ON_NEXT: Sentences = {"Its mean is {mean}, above {other}, the next, by {far}.": lambda value: value > 0.0}
+ON_LAWS: Sentences = {"{one} is above {other} by up to {far}.": lambda value: value > 0.0}
+ON_FURTHEST: Sentences = {"{one} is furthest from {other}, by {far}.": lambda value: value != 0.0}
+ON_MODEL: Sentences = {
     "{one} agrees with {other} within errors.": lambda apart: not apart.apart,
     "{one} is too low by up to {far}.": lambda apart: apart.apart and apart.value < 0.0,
     "{one} is too high by up to {far}.": lambda apart: apart.apart and apart.value > 0.0,
 }
-METHODS: Sentences = {
+ON_METHODS: Sentences = {
     "{one} and {other} differ by up to {far}.": lambda apart: bool(apart.apart),
     "{one} and {other} agree within errors: they differ by {far}.": lambda apart: not apart.apart,
 }
-OWN_ERROR: Sentences = {"{one} is off by up to {far}.": lambda row: row["error"] > 0.0}
+ON_OWN_ERROR: Sentences = {"{one} is off by up to {far}.": lambda row: row["error"] > 0.0}
 
 # Rows of a table: all, or those of one law, of one status, with large errors, with remarks
 
@@ -119,42 +119,42 @@ NO_MEANS: Sentences = {
     "No point has a number.": lambda rows: not has("status", "not_unique")(rows),
     "No point has one mean friction.": has("status", "not_unique"),
 }
-SILENT: Sentences = {"{law} has no number.": lambda rows: not has("mean_friction")(rows)}
-UNANSWERED: Sentences = {
+ON_SILENT: Sentences = {"{law} has no number.": lambda rows: not has("mean_friction")(rows)}
+ON_UNANSWERED: Sentences = {
     '<a href="#odd">not reached</a> at {points}, as the run was interrupted': lambda status: (
         status == "killed"
     ),
     '<a href="#odd">{status}</a> at {points}': lambda status: status in ("refused", "failed", "not unique"),
 }
-SEEN: Sentences = {", with means from {low} to {high}": has("mean_low")}
-ROUGH: Sentences = {
+ON_SEEN: Sentences = {", with means from {low} to {high}": has("mean_low")}
+ON_ROUGH: Sentences = {
     '<a href="#curves">errors up to {error}</a> above the tolerance of {tolerance} at {points}': has("error")
 }
-REMARKS: Sentences = {'<a href="#odd">a remark</a> at {points}': has("reason")}
-NEEDED: Sentences = {
+ON_REMARKS: Sentences = {'<a href="#odd">a remark</a> at {points}': has("reason")}
+ON_NEEDED: Sentences = {
     '<span class="warn">Needs attention:</span> {trouble}.': bool,
     '<span class="good">Nothing needs attention:</span> {points} ok.': lambda trouble: not trouble,
 }
-WELL: Sentences = {"Errors are at most {error}{besides}.": has("error")}
-FAILED: Sentences = {'<a href="#expected">{failed} of {expected} FAILED</a>': lambda passed: not all(passed)}
-HELD: Sentences = {"What the study expects holds: {expected}.": lambda passed: all(passed) and passed != []}
+ON_WELL: Sentences = {"Errors are at most {error}{besides}.": has("error")}
+ON_FAILED: Sentences = {'<a href="#expected">{failed} of {expected} FAILED</a>': lambda held: not all(held)}
+ON_HELD: Sentences = {"What the study expects holds: {expected}.": lambda held: all(held) and held != []}
 
 # Curves of one shape, by a reduced model or not, and the table of all curves
-BENDS: Sentences = {
+ON_BENDS: Sentences = {
     '<a href="#shape">Concave</a> (above the chord): {who}.': has("shape", "concave"),
     '<a href="#shape">Convex</a> (below the chord): {who}.': has("shape", "convex"),
     '<a href="#shape">Mixed</a> (on both sides of the chord): {who}.': has("shape", "mixed"),
     '<a href="#shape">Undecided</a> (errors leave it open): {who}.': has("shape", "undecided"),
 }
-OTHERWISE: Sentences = {"By {model} {shape}: {who}.": has("shape", "concave", "convex", "mixed")}
-AREA: Sentences = {
+ON_OTHERWISE: Sentences = {"By {model} {shape}: {who}.": has("shape", "concave", "convex", "mixed")}
+ON_AREA: Sentences = {
     "The area between curve and chord is {area} of that under the chord.": has("shape", "concave", "convex")
 }
 NO_SHAPE: Sentences = {
     "No curve has two belt speeds, so none has a shape.": lambda curves: curves.empty,
     "Without a shape: {without} ({why}).": lambda curves: curves["shape"].isna().any(),
 }
-ENDS: Sentences = {
+ON_ENDS: Sentences = {
     "Slip stops reversing at {end}.": lambda curves: not known_ends(curves).empty,
     "Where slip stops reversing is left open by errors.": lambda curves: known_ends(curves).empty,
 }
@@ -173,7 +173,7 @@ def has_degrees(count: int) -> Callable[[Scene], bool]:
     return lambda scene: scene.degrees_of_freedom == count
 
 
-SCENE: Sentences = {
+ON_SCENE: Sentences = {
     "Prescribed slip: a body whose slip over the belt is given, not computed.": has_degrees(0),
     "A body with one degree of freedom, on a moving belt.": has_degrees(1),
     "A body with two degrees of freedom, in the plane, on a moving belt.": has_degrees(2),
@@ -185,13 +185,13 @@ NONDIMENSIONAL = (
     "Nondimensional: lengths in L, times in 1/ω₁, forces in K₁L, speeds in ω₁L; friction coefficients are per unit "
     "normal load."
 )
-UNITS: Sentences = {
+ON_UNITS: Sentences = {
     GIVEN_IN_SI: lambda scene: scene.dimensional is not None,
     NONDIMENSIONAL: lambda scene: scene.dimensional is None,
 }
-SIZES = "amplitude", "unbalance", "velocity_amplitude"
-SHAKEN: Sentences = {
-    "{load} varies {wave}{often}.": lambda given: any(given.get(size) for size in SIZES),
+_SIZES = "amplitude", "unbalance", "velocity_amplitude"
+ON_SHAKEN: Sentences = {
+    "{load} varies {wave}{often}.": lambda given: any(given.get(size) for size in _SIZES),
     "A constant force pushes the body {where}.": lambda given: bool(given.get("offset")),
     "The stiffness of bristles follows it.": lambda given: given.get("contact") == "per_load",
     "The stiffness of bristles stays that of its mean.": lambda given: given.get("contact") == "constant",
@@ -208,7 +208,7 @@ def has_letter(*letters: str) -> Callable[[str], bool]:
     return lambda equations: any(f"<i>{letter}</i>" in equations for letter in letters)
 
 
-LETTERS: Sentences = {
+ON_LETTERS: Sentences = {
     "v is the slip velocity.": has_letter("v"),
     "T is the friction coefficient of the law along it; a mass that sticks has v = 0.": has_letter("T"),
     "w is the waveform.": has_letter("w"),

@@ -363,8 +363,8 @@ def everything_told() -> list[str]:
     """The paragraphs of every table above, and of every scene."""
     tables = [*WHO_IS_HIGHEST_WHERE.values(), [curve("coulomb", [NONE, NONE])], [SEVERAL]]
     in_si = {"mass": "3 kg", "stiffness": "300 N/m", "belt_speed": "1 m/s", "normal_load": "1 N"}
-    units = [say.told(say.UNITS, study_of(scene).scene) for scene in (BODY, {"dimensional": in_si})]
-    letters = [say.told(say.LETTERS, lines) for lines in ("<i>v</i> <i>T</i> <i>w</i>", "<i>H</i> <i>t</i>")]
+    units = [say.tell(say.ON_UNITS, study_of(scene).scene) for scene in (BODY, {"dimensional": in_si})]
+    letters = [say.tell(say.ON_LETTERS, text) for text in ("<i>v</i><i>T</i><i>w</i>", "<i>H</i><i>t</i>")]
     return [*(" ".join(told(*rows)) for rows in tables), *units, *letters, *SHAPES, *ATTENTION, *SCENES]
 
 

@@ -98,7 +98,7 @@ def test_equations_have_a_letter_for_each_input_that_is_not_zero(wanted: str) ->
     study = study_of(EQUATIONS[wanted])
 
     assert told(study) == wanted
-    assert ("Forces" in say.told(say.LETTERS, " ".join(equations(study)))) == bool(study.scene.dimensional)
+    assert ("Forces" in say.tell(say.ON_LETTERS, " ".join(equations(study)))) == bool(study.scene.dimensional)
 
 
 def test_what_is_swept_has_its_letter_where_the_study_has_zero() -> None:

@@ -51,9 +51,8 @@ def _shaken(study: Study, path: str) -> Markup:
         return Markup("")
     swept = (without_unit(name) for name in study.sweep if f"{path}." in name)
     given = part.model_dump() | {name.rpartition(".")[2]: "swept" for name in swept}
-    (what, where), ratio = _SHAKEN[path], given.get("frequency_ratio")
+    (what, where), ratio, at = _SHAKEN[path], given.get("frequency_ratio"), given.get("direction")
     turned = {None: "along the belt", 0.0: "along the belt", "swept": "in several directions"}
-    at = given.get("direction")
     where = where or turned.get(at) or f"at {number(at)}° to the motion of the belt"
     wave = "in several waveforms" if given["waveform"] == "swept" else f"as {(part.waveform or SINE).words}"
     pace: dict[Any, str] = {None: "", 1.0: "", "swept": " at several frequencies"}

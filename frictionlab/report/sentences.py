@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
+from pandas.api.types import is_numeric_dtype
 
 from frictionlab.runner.pairs import NOBODY, Ranking
 from frictionlab.scene.scene import Scene
@@ -28,7 +29,9 @@ def tell(sentences: Sentences, of: Any, **slots: Any) -> Markup:
 
 
 def way(rows: pd.DataFrame) -> str:
-    """Way of a curve, but for errors: flat, up or down along one axis throughout, else to and fro."""
+    """Way of a curve, but for errors: flat, up or down along one axis throughout, else to and fro; or a point."""
+    if len(rows) == 1:
+        return "point"
     mean, error = (rows[name].to_numpy(float) for name in ("mean_friction", "error"))
     low, high = mean.argmin(), mean.argmax()
     if mean[high] - mean[low] <= error[high] + error[low]:
@@ -38,24 +41,25 @@ def way(rows: pd.DataFrame) -> str:
     return next((name for name, so in ways.items() if rows.index.is_unique and so.all()), "to and fro")
 
 
+def goes(wanted: str) -> Callable[[pd.DataFrame], bool]:
+    """Check for a curve that goes this way."""
+    return lambda rows: way(rows) == wanted
+
+
 def passes_zero(rows: pd.DataFrame) -> list[int]:
-    """Places of the first two neighbours, of those that are not zero within errors, on both sides of zero."""
+    """Places along one axis of the first two neighbours, but for zeros within errors, on both sides of zero."""
     clear = np.flatnonzero(rows["mean_friction"].abs() > rows["error"])
     turns = np.flatnonzero(np.diff(np.sign(rows["mean_friction"].to_numpy(float)[clear])))
-    return [*map(int, clear[turns[0] : turns[0] + 2])] if len(turns) else []
+    return [*map(int, clear[turns[0] : turns[0] + 2])] if len(turns) and rows.index.is_unique else []
 
 
 ON_CURVE: Sentences = {
-    "The mean friction coefficient of {law} is {first}.": lambda rows: len(rows) == 1,
-    "Mean friction of {law} is the same within its errors at all {points}: {first}.": (
-        lambda rows: len(rows) > 1 and way(rows) == "flat"
-    ),
-    "Mean friction of {law} rises from {first} to {last}.": lambda rows: way(rows) == "up",
-    "Mean friction of {law} falls from {first} to {last}.": lambda rows: way(rows) == "down",
-    "Mean friction of {law} lies between {least} and {most}.": lambda rows: way(rows) == "to and fro",
-    "It passes zero between {before} and {after}.": lambda rows: (
-        rows.index.is_unique and passes_zero(rows) != []
-    ),
+    "The mean friction coefficient of {law} is {first}.": goes("point"),
+    "Mean friction of {law} is the same within its errors at all {points}: {first}.": goes("flat"),
+    "Mean friction of {law} rises from {first} to {last}.": goes("up"),
+    "Mean friction of {law} falls from {first} to {last}.": goes("down"),
+    "Mean friction of {law} lies between {least} and {most}.": goes("to and fro"),
+    "It passes zero between {before} and {after}.": lambda rows: bool(passes_zero(rows)),
 }
 
 # Laws, or what else is swept, ranked at every point
@@ -73,7 +77,8 @@ def is_won(ranking: Ranking) -> bool:
 
 def changes(ranking: Ranking) -> bool:
     """Check for several that are highest in turn, on few stretches of one axis."""
-    few = len(ranking.points.columns) == 1 and len(ranking.stretches) <= MOST_STRETCHES
+    along = len(ranking.points.columns) == 1 and is_numeric_dtype(ranking.points.iloc[:, 0])
+    few = along and len(ranking.stretches) <= MOST_STRETCHES
     return few and not (is_tied(ranking) or is_won(ranking))
 
 

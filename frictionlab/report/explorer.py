@@ -1,4 +1,4 @@
-"""What the explorer shows of a run: its curves with errors, the swept quantities that select among them.
+"""Explorer of a run: its curves with errors, the swept quantities that select among them.
 
 Also the scenes that the page's own solver takes for these curves.
 
@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable
 from html import escape, unescape
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,7 +18,7 @@ import pandas as pd
 
 from frictionlab import __version__
 from frictionlab.charts.curves import CurveData, Family, family_of
-from frictionlab.report.question import scene_sentences
+from frictionlab.report.question import scene_told
 from frictionlab.report.tables import html
 from frictionlab.runner.curve_loads import scene_of
 from frictionlab.runner.files import FolderError
@@ -29,13 +28,13 @@ from frictionlab.runner.words import counted
 from frictionlab.values.columns import is_belt_speed, word
 from frictionlab.values.units import in_shown_units
 
-RATIOS = "velocity_ratio", "normalized_friction"
+_RATIOS = "velocity_ratio", "normalized_friction"
 Quantity = tuple[str, str]
 """A swept input and the law whose parameter it is, "" for one of the scene."""
 
 
 def run_data(saved: Results) -> dict[str, Any]:
-    """The curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
+    """Return the curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
     family = family_of(in_shown_units(saved.shown, saved.study.units))
     if family is None:
         raise FolderError(f"{saved.folder}: its study sweeps no number, so there is no curve to explore")
@@ -52,14 +51,13 @@ def run_data(saved: Results) -> dict[str, Any]:
 
 
 def _start(curves: list[dict[str, Any]], speed: float) -> dict[str, float] | None:
-    """What the sliders of the page's solver begin with: the first scene shown that it solves, to six digits."""
+    """Choose what the sliders of the page's solver begin with: the first scene that it solves, to six digits."""
     shown = (curve["coulomb"] for curve in curves if curve["coulomb"] and not any(curve["at"]))
     if (first := next(shown, None)) is None:
         return None
     chosen = {name: first[name] for name in ("frequency", "damping", "friction")}
-    return {
-        name: float(f"{value:.6g}") for name, value in {**chosen, "belt": abs(speed) / first["limit"]}.items()
-    }
+    chosen["belt"] = abs(speed) / first["limit"]
+    return {name: float(f"{value:.6g}") for name, value in chosen.items()}
 
 
 def label(name: str, law: str = "") -> str:
@@ -70,32 +68,29 @@ def label(name: str, law: str = "") -> str:
 
 
 def _has_numbers(curve: CurveData) -> bool:
-    """Whether any point can be drawn: a mean, or the range of one that is not unique."""
+    """Check whether any point can be drawn: a mean, or the range of one that is not unique."""
     return bool(curve.rows.reindex(columns=["mean_friction", "mean_low"]).notna().to_numpy().any())
 
 
 def _settings(curve: CurveData) -> dict[Quantity, float | str]:
-    """What selects a curve among those of its law and method."""
+    """List what selects a curve among those of its law and method."""
     given = [*curve.panel, *([] if curve.member is None else [curve.member])]
-    return {
-        (name, curve.law if name.startswith("law.") else ""): value
-        for name, value in given
-        if value is not None
-    }
+    told = {(name, curve.law if name.startswith("law.") else ""): value for name, value in given}
+    return {quantity: value for quantity, value in told.items() if value is not None}
 
 
 def _swept(family: Family) -> dict[Quantity, list[float | str]]:
-    """The swept quantities beside the abscissa, each with its values: numbers ascending, words as they come."""
+    """List the swept quantities beside the abscissa, each with its values: numbers ascending, words as they come."""
     found: dict[Quantity, dict[float | str, None]] = {}
     for curve in family.curves:
         for quantity, value in _settings(curve).items():
             found.setdefault(quantity, {})[value] = None
-    return {quantity: _in_order(values) for quantity, values in found.items() if len(values) > 1}
+    several = {quantity: values for quantity, values in found.items() if len(values) > 1}
+    return {quantity: sorted(values, key=_rank) for quantity, values in several.items()}
 
 
-def _in_order(values: Iterable[float | str]) -> list[float | str]:
-    numbers = [value for value in values if not isinstance(value, str)]
-    return [*sorted(numbers), *(value for value in values if isinstance(value, str))]
+def _rank(value: float | str) -> float:
+    return math.inf if isinstance(value, str) else value
 
 
 def _curve(
@@ -104,48 +99,39 @@ def _curve(
     swept: dict[Quantity, list[float | str]],
     looks: list[tuple[str, str]],
 ) -> dict[str, Any]:
-    """One curve.
+    """Return the data of one curve.
 
     at: for each swept quantity the index of its value, None where the law does not have it. look: a number for each
     law and method, None where no point of the two can be drawn. coulomb: the scene for the page's solver, None where
     it takes none.
     """
     settings, rows, solved = _settings(curve), curve.rows, page_scene(curve, abscissa)
-    at = [
-        values.index(settings[quantity]) if quantity in settings else None
-        for quantity, values in swept.items()
-    ]
+    look, kinks = (curve.law, curve.method), curve.kinks or [None]
+    at = [values.index(settings[each]) if each in settings else None for each, values in swept.items()]
+    numbers = rows.reindex(columns=[abscissa, "mean_friction", "error", "mean_low", "mean_high"])
+    told = zip(("x", "mean", "error", "low", "high"), numbers.columns, strict=True)
     return {
         "law": curve.law,
         "method": curve.method,
-        "look": looks.index(pair) if (pair := (curve.law, curve.method)) in looks else None,
+        "look": looks.index(look) if look in looks else None,
         "at": at,
-        "x": _numbers(rows[abscissa]),
-        "mean": _numbers(rows["mean_friction"]),
-        "error": _numbers(rows["error"]),
-        "low": _numbers(rows.get("mean_low")) or [None] * len(rows),
-        "high": _numbers(rows.get("mean_high")) or [None] * len(rows),
+        **{name: _numbers(numbers[column]) for name, column in told},
         "status": rows["status"].astype(str).tolist(),
-        "kink": _kink(curve),
+        "kink": kinks[-1],
         "coulomb": solved and solved._asdict(),
     }
 
 
-def _kink(curve: CurveData) -> float | None:
-    return curve.kinks[-1] if curve.kinks else None
-
-
-def _numbers(column: pd.Series | None) -> list[float | None]:
+def _numbers(column: pd.Series) -> list[float | None]:
     """A column as JSON can hold it."""
-    found = [] if column is None else column.astype(float).tolist()
-    return [value if math.isfinite(value) else None for value in found]
+    return [value if math.isfinite(value) else None for value in column.astype(float).tolist()]
 
 
 # --- the scenes that the page solves itself -----------------------------------------------------------------------
 
 
 class PageScene(NamedTuple):
-    """One degree of freedom under one sine, as the page's solver takes it.
+    """Body of one degree of freedom under one sine, as the page's solver takes it.
 
     frequency, damping: of the scene, both > 0; friction: mu * normal load over the load's amplitude; mu: of sliding;
     limit: V_lin in the units of the curve's belt speeds.
@@ -159,21 +145,16 @@ class PageScene(NamedTuple):
 
 
 def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
-    """The scene of a curve over belt speed; None where it is none that the page solves.
+    """Return the scene of a curve over belt speed; None where it is none that the page solves.
 
     It solves a body along the belt, damped, under one sine, with one coefficient of sliding friction.
     """
-    if not is_belt_speed(abscissa) or any(name not in curve.rows for name in RATIOS):
+    if not is_belt_speed(abscissa) or any(name not in curve.rows for name in _RATIOS):
         return None
     scene = scene_of(curve.rows.iloc[0].to_dict())
     load = 0.0 if scene.drive is None else scene.drive.size(scene.frequency)
-    if (
-        scene.degrees_of_freedom != 1
-        or scene.is_free
-        or not scene.is_harmonic
-        or not load
-        or not scene.damping_ratio
-    ):
+    on_a_line = scene.degrees_of_freedom == 1 and not scene.is_free
+    if not (on_a_line and scene.is_harmonic and load and scene.damping_ratio):
         return None
     rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0.0]
     left = rows["normalized_friction"] != 0.0
@@ -202,25 +183,20 @@ def write_explorer(file: Path, saved: Results | None = None) -> Path:
 
 
 def explorer(saved: Results | None = None) -> str:
-    """The page as text. Raises FolderError."""
-    data = None if saved is None else run_data(saved)
-    scripts = ["address.js", "solver.js", "chart.js", "coulomb.js", *([] if data is None else ["run.js"])]
-    values = {
-        "generator": f"frictionlab {__version__}",
-        "title": TITLE,
-        "style": _part("page.css"),
-        "scene": OWN_SCENE if saved is None else escape(scene_sentences(saved.study)),
-        "run": ""
-        if saved is None
-        else _filled("run.html", {"title": escape(saved.title), "sentence": _sentence(saved)}),
-        "data": "" if data is None else _embedded(data),
-        "script": "\n".join(map(_part, scripts)),
-    }
-    return _filled("page.html", values)
+    """Return the page as text. Raises FolderError."""
+    scripts = ["address.js", "solver.js", "chart.js", "coulomb.js"]
+    values = {"generator": f"frictionlab {__version__}", "title": TITLE, "style": _part("page.css")}
+    of_run = {"scene": OWN_SCENE, "run": "", "data": ""}
+    if saved is not None:
+        scripts.append("run.js")
+        told = {"title": escape(saved.title), "sentence": _sentence(saved)}
+        of_run = {"scene": str(scene_told(saved.study)), "run": _filled("run.html", told)}
+        of_run["data"] = _embedded(run_data(saved))
+    return _filled("page.html", values | of_run | {"script": "\n".join(map(_part, scripts))})
 
 
 def _sentence(saved: Results) -> str:
-    """How many points of which laws and methods there are, as HTML."""
+    """Count the points, and name their laws and methods, as HTML."""
     table = saved.shown
     shown = counted(len(table), "point")
     of = f" of {saved.size}, spread over them" if len(table) < saved.size else ""
@@ -241,7 +217,6 @@ def _filled(name: str, values: dict[str, str]) -> str:
 
 def _embedded(data: dict[str, Any]) -> str:
     """Data as a script element that nothing in it can end."""
-    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace(
-        "<", "\\u003c"
-    )
-    return f'<script type="application/json" id="run-data">{text}</script>'
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    safe = text.replace("<", "\\u003c")
+    return f'<script type="application/json" id="run-data">{safe}</script>'

@@ -1,8 +1,8 @@
-"""What sentences and tables of a page are made from: a run, and what is read from its tables once."""
+"""Facts for sentences and tables of a page: a run, and what is read from its tables once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,7 +15,7 @@ from frictionlab.report.tables import Cell, settings
 from frictionlab.runner.pairs import Difference, method_pairs
 from frictionlab.runner.results import Results
 from frictionlab.runner.table import swept_inputs
-from frictionlab.values.columns import BELT_SPEED, belt_speed
+from frictionlab.values.columns import belt_speed, shown_column
 from frictionlab.values.units import as_shown
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class CurveRows(NamedTuple):
-    """The rows of one law and method that differ in belt speed alone.
+    """Rows of one law and method that differ in belt speed alone.
 
     where: what else was swept, and its value. table, places: where the rows are; no curve of many holds them itself.
     """
@@ -36,27 +36,28 @@ class CurveRows(NamedTuple):
 
     @property
     def rows(self) -> pd.DataFrame:
-        """All of them."""
+        """Return all of them."""
         return self.table.iloc[self.places]
 
-    def first(self, *names: str) -> dict[str, Any]:
-        """Of the first row what the table has of these columns."""
-        return {name: self.table[name].iat[self.places[0]] for name in names if name in self.table}
+    @property
+    def row(self) -> pd.Series:
+        """Return the first of them."""
+        return self.table.iloc[self.places[0]]
+
+    def measure(self, name: str) -> tuple[Any, Any]:
+        """A number of the first of them with its error, in the units in which it is shown; text with 0."""
+        column, error = (shown_column(self.table.columns, each) for each in (name, f"{name}_error"))
+        return self.row[column], self.row.get(error, 0.0)
 
     @property
     def of(self) -> tuple[str, ...]:
-        """The law and the values, which curves by other methods have, too."""
+        """Return the law and the values, which curves by other methods have, too."""
         return self.law, *map(str, self.where.values())
 
     @property
     def name(self) -> Markup:
-        """What tells the curve from the others of its law and method."""
+        """Name what tells the curve from the others of its law and method."""
         return settings(self.where)
-
-    @property
-    def key(self) -> str:
-        """Law, method and values as one word, the same in every table that has the curve."""
-        return f"{self.law}, {self.method}, {self.name}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +69,7 @@ class Facts:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """The result table, in the units in which it is shown, laws and methods in words."""
+        """Return the result table, in the units in which it is shown, laws and methods in words."""
         return self._shown(self.saved.shown)
 
     def _shown(self, table: pd.DataFrame) -> pd.DataFrame:
@@ -76,24 +77,28 @@ class Facts:
 
     @property
     def speed(self) -> str:
-        """The column of the belt speed, in the units given."""
+        """Return the column of the belt speed, in the units given."""
         return belt_speed(self.table.columns)
 
     @cached_property
     def swept(self) -> list[str]:
-        """What is swept besides belt speed."""
+        """List what is swept besides belt speed."""
         return swept_inputs(self.table)
+
+    def where(self, row: pd.Series) -> dict[str, Any]:
+        """Tell where a point is: its belt speed, and what else is swept."""
+        return {name: row[name] for name in (self.speed, *self.swept)}
 
     @cached_property
     def figures(self) -> FigureData:
-        """What its figures of the table are drawn of."""
+        """Return the data of the figures of its table."""
         from frictionlab.charts.figures import FigureData  # with matplotlib, which takes a second
 
         return self.drawn or FigureData.of(self.saved.study, self.saved.shown)
 
     @cached_property
     def reduced(self) -> frozenset[str]:
-        """Its methods that solve a simpler model, in words."""
+        """Return its methods that solve a simpler model, in words."""
         study = self.saved.study
         return frozenset(study.in_words["method"][each.label] for each in study.methods if each.is_reduced)
 
@@ -104,16 +109,16 @@ class Facts:
 
     @cached_property
     def cited(self) -> list[Cited]:
-        """Whom it draws on."""
+        """List the sources it draws on."""
         return sources(self.saved)
 
     @cached_property
     def curves(self) -> list[CurveRows]:
-        """The curves of the result table, in its order."""
+        """Return the curves of the result table, in its order."""
         return self.curves_of(self.table)
 
     def curves_of(self, table: pd.DataFrame) -> list[CurveRows]:
-        """Those of a table of this run, told apart by what is swept."""
+        """Return those of a table of this run, told apart by what is swept."""
         table = self._shown(table)
         told = [name for name in self.swept if name in table]
         groups = table.groupby(["law", "method", *told], sort=False, dropna=False).indices
@@ -125,24 +130,12 @@ class Facts:
         ]
         return sorted(found, key=lambda curve: curve.places[0])
 
-    @cached_property
-    def _scales(self) -> dict[str, float]:
-        """Of each curve by its key a belt speed in the units given over the nondimensional one."""
-        found = {}
-        for curve in self.curves if self.speed != BELT_SPEED else ():
-            ratios = curve.rows[self.speed] / curve.rows[BELT_SPEED]
-            found[curve.key] = float(ratios[ratios.abs() < float("inf")].median())
-        return {key: scale for key, scale in found.items() if scale == scale}
 
-    def speed_in_given_units(
-        self, curve: CurveRows, row: Mapping[str, Any], name: str
-    ) -> tuple[float, float]:
-        """A belt speed of a row of a curve, and its error; 0 for that of a point."""
-        scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
-        return scale * float(row[name]), scale * float(row.get(f"{name}_error", 0.0))
-
-
-def whose(curves: Sequence[CurveRows]) -> Iterator[list[Cell]]:
-    """Of each curve its law, its method where there are several, and what tells it from the others."""
+def whose(curves: Sequence[CurveRows]) -> dict[Cell, Callable[[CurveRows], Cell]]:
+    """Columns of a table of curves: law, method where there are several, and what tells one from the others."""
     several = len({curve.method for curve in curves}) > 1
-    return ([curve.law, curve.method if several else "", curve.name] for curve in curves)
+    return {
+        "law": lambda curve: curve.law,
+        "method": lambda curve: curve.method if several else "",
+        "curve": lambda curve: curve.name,
+    }

@@ -1,4 +1,4 @@
-"""The figures of a run, inside the page, each with a caption made from the study."""
+"""Figures of a run, inside the page, each with a caption made from the study."""
 
 from __future__ import annotations
 
@@ -16,11 +16,9 @@ from frictionlab.charts.curves import Family
 from frictionlab.charts.figures import OTHER_FIGURES
 from frictionlab.report.facts import Facts
 from frictionlab.report.question import given_of, is_taken, values_listed
-from frictionlab.report.tables import html, joined_values, setting, symbol_html, unit_html, word_html
+from frictionlab.report.tables import joined_values, settings, symbol_html, unit_html, word_html
 from frictionlab.runner.results import folder_of
 from frictionlab.runner.words import counted
-from frictionlab.values.columns import typeset
-from frictionlab.values.quantities import Written
 
 LARGEST_SVG = 400_000
 """Bytes of a drawing above which the pixels of the same figure are put into the page, where they are fewer."""
@@ -41,7 +39,7 @@ class Picture(NamedTuple):
 
 
 def pictures(run: Facts) -> list[Picture]:
-    """The figures of a run, the one that answers its question first; one that is not in its folder has no address.
+    """Return the figures of a run, first the one that answers its question; one not in its folder has no address.
 
     The first caption says what lines mean and what is held fixed; the others lead to it. Those that only some tables
     have are there where they were drawn.
@@ -85,8 +83,7 @@ def _of_kept(run: Facts, name: str) -> Picture:
 
 
 def _described(run: Facts, name: str) -> Markup:
-    _, more = OTHER_FIGURES[name]
-    return escape(f"{run.figures.described(name)}{more}")
+    return escape(f"{run.figures.described(name)}{OTHER_FIGURES[name][1]}")
 
 
 def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
@@ -103,33 +100,30 @@ def _of_bifurcation(run: Facts, name: str, rows: DataFrame) -> Picture:
 
 
 def _of_table(run: Facts, name: str, lines_in: int = 0) -> Picture:
-    """One of the table; lines_in: the number of the figure whose caption says what lines mean, 0 for its own."""
-    family, maps = run.figures.family, run.figures.maps
+    """Describe one of the table; lines_in: number of the figure whose caption says what lines mean, 0 for its own."""
+    family, maps, table = run.figures.family, run.figures.maps, run.figures.table
     assert family is not None
     axes, columns = run.figures.axes_of(name) if name in run.figures.columns else ([], [])
-    over = Markup(" and ").join(map(word_html, axes))
-    shown = Markup(", ").join(map(word_html, columns))
+    over, shown = Markup(" and ").join(map(word_html, axes)), Markup(", ").join(map(word_html, columns))
     shown = Markup(shown[:1].upper() + shown[1:])
     if maps is None:
-        told = [Markup("{} against {}").format(shown, over) if columns else _described(run, name)]
+        told = Markup("{} against {}").format(shown, over) if columns else _described(run, name)
         drawn = [each for each in family.curves if name != "differences" or each.law != run.figures.reference]
-        lines = list(_lines(replace(family, curves=drawn)))
+        lines = [*_lines(replace(family, curves=drawn))]
     else:
-        told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
-        names = (joined_values(run.figures.table[name].unique()) for name in ("law", "method"))
-        lines = [Markup("Laws: {}; methods: {}").format(*names)]
-    if not lines_in:
-        told += [*lines, *_held_and_missing(run)]
-    elif maps is None:
-        told.append(Markup(f"Lines as in Figure {lines_in}"))
-    known = {column: run.figures.table[column].dropna() for column in columns}
-    spans = " ".join(
-        f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
-        for column, found in known.items()
-    )
+        told = Markup("{} over {}, in shades with lines of equal value").format(shown, over)
+        lines = [
+            Markup("Laws: {}; methods: {}").format(
+                *(joined_values(table[each].unique()) for each in ("law", "method"))
+            )
+        ]
+    same = [Markup(f"Lines as in Figure {lines_in}")] if maps is None else []
+    caption = Markup(". ").join([told, *(same if lines_in else [*lines, *_held_and_missing(run)])])
+    ends = {word_html(column).striptags(): (table[column].min(), table[column].max()) for column in columns}
+    spans = "".join(f" {words}: from {low:.4g} to {high:.4g}." for words, (low, high) in ends.items())
     beside = maps is not None and name == "mean_friction" and run.figures.error_seen
     pictures = len(family.panels if maps is None else maps.pictures) * (max(1, len(columns)) + beside)
-    return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", pictures == 1)
+    return _picture(run, name, caption + ".", spans, pictures == 1)
 
 
 def _lines(family: Family) -> Iterator[Markup]:
@@ -148,17 +142,12 @@ def _lines(family: Family) -> Iterator[Markup]:
 
 
 def _held_and_missing(run: Facts) -> Iterator[Markup]:
-    """The values of the scene, no defaults, that all points share; how many points have no number but a mark."""
+    """List the values of the scene, no defaults, that all points share; count points with a mark for a number."""
     study = run.saved.study
-    fixed = [
-        Markup("{} = {}").format(symbol_html(name), html(typeset(value.text)))
-        if isinstance(value, Written)
-        else setting(name, value)
-        for name, value in given_of(study, defaults=False).items()
-        if name not in study.sweep and not is_taken(study, name)
-    ]
+    given = given_of(study, defaults=False).items()
+    fixed = {name: value for name, value in given if name not in study.sweep and not is_taken(study, name)}
     if fixed:
-        yield Markup("Held fixed: {}").format(Markup(", ").join(fixed))
+        yield Markup("Held fixed: {}").format(settings(fixed))
     counts = {status.replace("_", " "): count for status, count in run.saved.counts.items() if status != "ok"}
     if told := [f"{counted(count, 'point')} {status}" for status, count in counts.items()]:
         yield Markup("Without a number, and marked as such: {}").format(", ".join(told))

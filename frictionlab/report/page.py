@@ -1,4 +1,4 @@
-"""The page of a run and that of a folder of runs: HTML files that need nothing else, made of what folders hold.
+"""Page of a run and that of a folder of runs: HTML files that need nothing else, made of what folders hold.
 
 The page of a fit: sentences, the figure, how well each law fits, the numbers with their errors.
 """
@@ -6,24 +6,24 @@ The page of a fit: sentences, the figure, how well each law fits, the numbers wi
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from frictionlab import __version__
 from frictionlab.report import findings, question
-from frictionlab.report.answer import sentences
-from frictionlab.report.equation import equations, letters_sentence
+from frictionlab.report import sentences as say
+from frictionlab.report.answer import paragraphs
+from frictionlab.report.equation import equations
 from frictionlab.report.facts import Facts
-from frictionlab.report.shapes import shape_grid
-from frictionlab.report.sources import entries_of, published
-from frictionlab.report.tables import Grid, grid, size
+from frictionlab.report.sentences import tell
+from frictionlab.report.sources import bibtex, published
+from frictionlab.report.tables import Cell, Grid, grid, in_order, number, size
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.results import Results, folder_of
 from frictionlab.runner.words import counted
@@ -32,7 +32,6 @@ from frictionlab.values.printable import with_error
 
 if TYPE_CHECKING:
     from frictionlab.charts.figures import FigureData
-    from frictionlab.report.figures import Picture
 
 
 REPORT_TEMPLATES = Path(__file__).parent / "templates"
@@ -57,29 +56,29 @@ def write_report(saved: Results, drawn: FigureData | None = None) -> Path:
 
 
 def report(saved: Results, drawn: FigureData | None = None) -> str:
-    """The page of a run."""
-    run = Facts(saved, drawn)
-    parts = _head(run) | _asked(saved) | _found(run) | _last(run)
-    return rendered("report.html", title=saved.title, headings=_headings(parts), **parts)
+    """Return the page of a run."""
+    run, shown = Facts(saved, drawn), []
+    if saved.study.sweep:
+        from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
 
-
-def _headings(parts: dict[str, Any]) -> dict[str, str]:
-    """The sections of a page and their headings, those left out of which there is nothing to show."""
-    curved = bool(parts["shape"] and parts["shape"].rows)
-    sections = {
-        "shape": ("Which way the curves bend", curved),
-        "curves": (f"The {'curves' if curved else 'numbers'}, and how exact they are", True),
-        "pairs": ("Compared in pairs", any(each.rows for each in parts["pairs"])),
-        "onsets": ("Where stick begins and ends", parts["onsets"] and parts["onsets"].rows),
-        "figures": ("More figures", parts["pictures"]),
-        "odd": ("Points to look at", parts["odd"].rows),
-        "expected": ("What was expected", parts["expected"]),
-        "asked": ("The problem", True),
-        "methods": ("How the numbers were found", True),
-        "sources": ("Sources", True),
-        "again": ("How to run it again", True),
-    }
-    return {name: heading for name, (heading, shown) in sections.items() if shown}
+        shown = pictures(run)
+    lines = equations(saved.study)
+    tables = {"found": findings, "asked": question, "versions": _versions(saved), "runs": _runs(saved)}
+    again = {"commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN, "bibtex": bibtex([saved])}
+    return rendered(
+        "report.html",
+        title=saved.title,
+        saved=saved,
+        run=run,
+        pictures=shown,
+        paragraphs=paragraphs(run),
+        equations=lines,
+        letters=tell(say.ON_LETTERS, " ".join(lines)),
+        references=published(run.cited),
+        yaml=yaml_text(saved.study.resolved()),
+        **tables,
+        **again,
+    )
 
 
 def rendered(template: str, **values: Any) -> str:
@@ -89,34 +88,20 @@ def rendered(template: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
-    return Environment(
+    made = Environment(
         loader=FileSystemLoader(REPORT_TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.globals |= {"wall": wall, "size_of": size, "counted": counted}
+    return made
 
 
 @cache
 def _style() -> Markup:
     return Markup((REPORT_TEMPLATES / "style.css").read_text(encoding="utf-8").strip())
-
-
-def _head(run: Facts) -> dict[str, Any]:
-    rows = len(run.table)
-    shown: list[Picture] = []
-    if run.saved.study.sweep:
-        from frictionlab.report.figures import pictures  # with matplotlib, which takes a second
-
-        shown = pictures(run)
-    return {
-        "heading": Markup("V<sub>lin</sub>").join(map(escape, run.saved.title.split("V_lin"))),
-        "sentences": sentences(run),
-        "first": shown[:1],
-        "pictures": shown[1:],
-        "thinned": counted(rows, "point") if rows < run.saved.size else "",
-    }
 
 
 def wall(seconds: float) -> str:
@@ -127,77 +112,20 @@ def wall(seconds: float) -> str:
     return f"{whole // 60} min {whole % 60} s"
 
 
-def _asked(saved: Results) -> dict[str, Any]:
-    study = saved.study
-    return {
-        "scene_sentence": question.scene_sentences(study),
-        "units_sentence": question.units_sentence(study.scene),
-        "source": study.source,
-        "sketched": study.scene.degrees_of_freedom > 0,
-        "pushed": study.scene.drive is not None,
-        "equations": equations(study),
-        "letters_sentence": letters_sentence(study),
-        "scene": question.scene_grid(study),
-        "laws": question.laws_grid(study),
-        "methods": question.methods_grid(study),
-        "sweep": question.sweep_grid(study),
-        "tolerance": f"{study.tolerance:g}",
-        "keep": study.keep.orbit,
-        "yaml": yaml_text(study.resolved()),
-    }
-
-
-def _found(run: Facts) -> dict[str, Any]:
-    verdicts, onsets = run.saved.verdicts, run.saved.shown_onsets
-    passed = sum(verdict.passed for verdict in verdicts)
-    return {
-        "curves": findings.curves_grid(run),
-        "whole": findings.whole_grid(run),
-        "shape": shape_grid(run),
-        "pairs": findings.pair_grids(run),
-        "onsets": None if onsets is None else findings.onset_grid(run, onsets),
-        "verdicts": findings.verdicts_grid(verdicts),
-        "passed": passed,
-        "fold": 0 < len(verdicts) == passed,
-        "expected": len(run.saved.study.expect),
-        "odd": findings.trouble_grid(run),
-        "unique": findings.uniqueness_grid(run),
-        "models": findings.models_grid(run),
-    }
-
-
-def _last(run: Facts) -> dict[str, Any]:
-    saved = run.saved
-    return {
-        "sources": run.cited,
-        "references": published(run.cited),
-        "bibtex": entries_of([(saved, run.cited)]),
-        "versions": _versions(saved),
-        "runs": _runs(saved.account["runs"]),
-        "wall": wall(saved.seconds),
-        "size": counted(saved.size, "point"),
-        "commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN,
-    }
-
-
 def _versions(saved: Results) -> Grid:
-    account = saved.account
-    own = {name: account.get(name) for name in ("frictionlab", "python", "platform")}
-    rows = [[name, str(value)] for name, value in (own | account["packages"]).items() if value]
-    return grid("Versions with which the numbers were made", ["what", "version"], rows)
+    own = {name: saved.account.get(name) for name in ("frictionlab", "python", "platform")}
+    made_with = [(name, str(value)) for name, value in (own | saved.account["packages"]).items() if value]
+    return grid("Versions with which the numbers were made", in_order("what", "version"), made_with)
 
 
-def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
-    rows = [
-        [
-            str(run.get("started", "")),
-            wall(run["seconds"]),
-            counted(int(run.get("computed", 0)), "point"),
-            " ".join(f"--set {each}" for each in run.get("overrides", [])),
-        ]
-        for run in runs
-    ]
-    return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
+def _runs(saved: Results) -> Grid:
+    columns: dict[Cell, Callable[[dict[str, Any]], Cell]] = {
+        "started": lambda run: str(run.get("started", "")),
+        "took": lambda run: wall(run["seconds"]),
+        "computed": lambda run: counted(int(run.get("computed", 0)), "point"),
+        "set on the command line": lambda run: " ".join(f"--set {each}" for each in run.get("overrides", [])),
+    }
+    return grid("When it ran", columns, saved.account["runs"])
 
 
 def write_index(folder: Path, runs: Sequence[Results]) -> Path:
@@ -208,39 +136,22 @@ def write_index(folder: Path, runs: Sequence[Results]) -> Path:
 
 
 def index(folder: Path, runs: Sequence[Results]) -> str:
-    """The page of a folder of studies."""
-    entries = [_entry(folder, run) for run in runs]
+    """Return the page of a folder of studies."""
+    from frictionlab.report.figures import address
+
     counts = sum((Counter(run.counts) for run in runs), Counter())
+    names = [folder_of(run).relative_to(folder).as_posix() for run in runs]
+    drawn = (address(folder / name / "figures" / "mean_friction") for name in names)
+    thumbnails = [each if len(each) <= LARGEST_THUMBNAIL else "" for each in drawn]
     return rendered(
         "index.html",
         title=f"Studies in {folder.absolute().name}",
         size=f"{len(runs)} studies, {counted(sum(counts.values()), 'point')}",
         counts=dict(counts.most_common()),
-        passed=sum(entry["passed"] for entry in entries),
-        failed=sum(entry["failed"] for entry in entries),
-        wall=wall(sum(run.seconds for run in runs)),
-        entries=entries,
+        verdicts=[verdict for run in runs for verdict in run.verdicts],
+        seconds=sum(run.seconds for run in runs),
+        entries=list(zip(runs, names, thumbnails, strict=True)),
     )
-
-
-def _entry(folder: Path, run: Results) -> dict[str, Any]:
-    """A study's row."""
-    from frictionlab.report.figures import address
-
-    own = folder_of(run)
-    name, passed = own.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
-    picture = address(own / "figures" / "mean_friction")
-    return {
-        "name": name,
-        "title": run.title,
-        "link": f"{quote(name)}/report.html",
-        "points": ", ".join(f"{count} {status}" for status, count in run.counts.items()),
-        "passed": passed,
-        "failed": len(run.verdicts) - passed,
-        "error": size(float(run.table["error"].max())),
-        "wall": wall(run.seconds),
-        "thumbnail": picture if len(picture) <= LARGEST_THUMBNAIL else "",
-    }
 
 
 FIT_CAPTION = (
@@ -264,41 +175,34 @@ def write_fit_page(found: Any, path: Any, title: str = "") -> Path:
 
 
 def fit_page(found: Any, title: str, picture: str) -> str:
-    """The page as HTML."""
-    parts = {"sentences": found.sentences, "laws": _laws(found.laws), "numbers": _numbers(found.table)}
-    return rendered("fit.html", title=title, picture=picture, caption=FIT_CAPTION, **parts)
+    """Return the page as HTML."""
+    laws, numbers = ([row for _, row in table.iterrows()] for table in (found.laws, found.table))
+    return rendered(
+        "fit.html",
+        title=title,
+        picture=picture,
+        caption=FIT_CAPTION,
+        sentences=found.sentences,
+        laws=grid("Laws, by what is left over", _LAWS, laws),
+        numbers=grid("Fitted numbers, with the error from blocks", _NUMBERS, numbers),
+    )
 
 
-def _laws(table: pd.DataFrame) -> Grid:
-    head = ["law", "rms", "left out", "AIC", "starts that agree", "why there is no fit"]
-    rows = [
-        [
-            str(row["law"]),
-            f"{row['rms']:.4g}",
-            with_error(row["left_out_rms"], row["left_out_rms_error"]),
-            f"{row['aic']:.5g}",
-            f"{row['starts_agreeing']:.0f}",
-            "",
-        ]
-        if row["status"] == "ok"
-        else [str(row["law"]), "", "", "", "", str(row["reason"])]
-        for _, row in table.iterrows()
-    ]
-    return grid("Laws, by what is left over", head, rows)
-
-
-def _numbers(table: pd.DataFrame) -> Grid:
-    head = ["law", "number", "value", "naive error", "95 %", "profile", "on an end of its range"]
-    rows = [
-        [
-            str(row["law"]),
-            str(row["parameter"]),
-            with_error(row["value"], row["block_error"]),
-            size(row["naive_error"]),
-            f"{row['low']:.5g} to {row['high']:.5g}",
-            str(row["shape"]),
-            "yes" if row["at_bound"] else "",
-        ]
-        for _, row in table.iterrows()
-    ]
-    return grid("Fitted numbers, with the error from blocks", head, rows)
+_LAWS: dict[Cell, Callable[[pd.Series], Cell]] = {
+    "law": lambda law: str(law["law"]),
+    "rms": lambda law: number(law["rms"], 4),
+    "left out": lambda law: with_error(law["left_out_rms"], law["left_out_rms_error"]),
+    "AIC": lambda law: number(law["aic"], 5),
+    "starts that agree": lambda law: number(law["starts_agreeing"]),
+    "why there is no fit": lambda law: "" if law["status"] == "ok" else str(law["reason"]),
+}
+_NUMBERS: dict[Cell, Callable[[pd.Series], Cell]] = {
+    "law": lambda fitted: str(fitted["law"]),
+    "number": lambda fitted: str(fitted["parameter"]),
+    "value": lambda fitted: with_error(fitted["value"], fitted["block_error"]),
+    "naive error": lambda fitted: size(fitted["naive_error"]),
+    "95 %": lambda fitted: f"{fitted['low']:.5g} to {fitted['high']:.5g}",
+    "profile": lambda fitted: str(fitted["shape"]),
+    "on an end of its range": lambda fitted: "yes" if fitted["at_bound"] else "",
+}
+"""Columns of the tables of a fit."""

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from frictionlab.report.preview import preview_html
 from frictionlab.runner.api import solve_study
 from frictionlab.runner.arguments import (
     Existing,
@@ -263,6 +262,8 @@ class Run(Results):
         return summary(self)
 
     def _repr_html_(self) -> str:
+        from frictionlab.report.preview import preview_html  # with jinja2, which takes a moment
+
         table, curves = (in_shown_units(each, self.study.units) for each in (self.table, self.curves))
         return preview_html(table, curves)
 
@@ -519,11 +520,9 @@ def sweep(
     >>> len(found.table)
     4
     """
-    told = {
-        "tolerance": tolerance,
-        "columns": columns if columns is None or isinstance(columns, str) else list(columns),
-    }
-    return run(Study.of(scene, laws, methods, over, **told), executor=executor, progress=progress)
+    asked = columns if columns is None or isinstance(columns, str) else list(columns)
+    study = Study.of(scene, laws, methods, over, tolerance=tolerance, columns=asked)
+    return run(study, executor=executor, progress=progress)
 
 
 _COEFFICIENTS = "law.mu", "law.mu_kinetic", "law.mu_static"

@@ -1,4 +1,4 @@
-"""Whom a run draws on: the study's source, then the publications behind the laws and methods that gave numbers."""
+"""Sources of a run: that of the study, then the publications behind the laws and methods that gave numbers."""
 
 from __future__ import annotations
 
@@ -21,16 +21,11 @@ from frictionlab.study.parts import LawChoice
 
 
 def bibtex(runs: Sequence[Results]) -> str:
-    """One entry for each publication, under a comment that says what used it; keys differ."""
-    return entries_of([(run, sources(run)) for run in runs])
-
-
-def entries_of(runs: Sequence[tuple[Results, Sequence[Cited]]]) -> str:
-    """The same of runs with what they cite."""
+    """Return one entry for each publication, under a comment that says what used it; keys differ."""
     users: dict[Publication, list[str]] = {}
-    for run, cited in runs:
+    for run in runs:
         users.setdefault(itself(str(run.account.get("frictionlab", ""))), ["the program"])
-        for each in cited:
+        for each in sources(run):
             for reference in each.references:
                 users.setdefault(reference, []).append(each.what)
     whom = [", ".join(dict.fromkeys(each)) for each in users.values()]
@@ -39,7 +34,7 @@ def entries_of(runs: Sequence[tuple[Results, Sequence[Cited]]]) -> str:
 
 
 def itself(version: str) -> Publication:
-    """The entry of frictionlab. version: that which made the numbers."""
+    """Return the entry of frictionlab. version: that which made the numbers."""
     fields = {
         "author": "{The frictionlab authors}",
         "title": "frictionlab: average-friction curves of vibrated sliding bodies",
@@ -50,7 +45,7 @@ def itself(version: str) -> Publication:
 
 
 def with_keys_of_their_own(references: Iterable[Publication]) -> list[str]:
-    """The entries as written, but for a key that another entry has already: it gets a number."""
+    """Return the entries as written, but for a key that another entry has already: it gets a number."""
     entries, taken = [], set[str]()
     for each in references:
         key, number = each.key, 1
@@ -64,18 +59,18 @@ def with_keys_of_their_own(references: Iterable[Publication]) -> list[str]:
 
 
 def law_text(law: LawChoice) -> str:
-    """The docstring of a law."""
+    """Return the docstring of a law."""
     return inspect.getdoc(law.law_class) or ""
 
 
 def method_text(name: str) -> str:
-    """The docstring of a method; nothing for one that is not installed here."""
+    """Return the docstring of a method; nothing for one that is not installed here."""
     written = _written(name)
     return (ast.get_docstring(written) or "") if written else ""
 
 
 def method_bibtex(name: str) -> str:
-    """The ``bibtex`` of a method; nothing for one that is not installed here."""
+    """Return the ``bibtex`` of a method; nothing for one that is not installed here."""
     for node in written.body if (written := _written(name)) else ():
         targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
         if any(isinstance(target, ast.Name) and target.id == "bibtex" for target in targets):
@@ -86,7 +81,7 @@ def method_bibtex(name: str) -> str:
 
 @cache
 def _written(name: str) -> ast.ClassDef | None:
-    """The class of a method as its file has it: reading it is quicker than importing what it needs."""
+    """Return the class of a method as its file has it: reading it is quicker than importing what it needs."""
     for door in entry_points(group=registry.METHODS, name=name):
         try:
             spec = find_spec(door.module)
@@ -112,7 +107,7 @@ class Cited(NamedTuple):
 
 
 def sources(saved: Results) -> list[Cited]:
-    """The study's source, then those of its laws, then those of its methods, each where it gave a number."""
+    """Return the study's source, then those of its laws, then those of its methods, each where it gave a number."""
     study, table = saved.study, saved.shown
     found = table[table["mean_friction"].notna() | (table["status"] == "not_unique")]
     laws = {law.kind: law for law in study.laws if law.kind in found["kind"].unique()}
@@ -130,12 +125,12 @@ def sources(saved: Results) -> list[Cited]:
 
 
 def published(cited: Iterable[Cited]) -> list[Publication]:
-    """The publications among them, each once."""
+    """Return the publications among them, each once."""
     return list(dict.fromkeys(each for one in cited for each in one.references if "author" in each.fields))
 
 
 def chosen_by_auto(found: pd.DataFrame) -> dict[str, str]:
-    """The methods that ``auto`` chose, as ``model`` names them; else those that it says it chooses from."""
+    """Return the methods that ``auto`` chose, as ``model`` names them; else those that it says it chooses from."""
     installed = registry.method_names()
     said = " ".join(found["model"].dropna().unique())
     if chosen := [name for name in _CHOICE.findall(said) if name in installed]:
@@ -145,13 +140,13 @@ def chosen_by_auto(found: pd.DataFrame) -> dict[str, str]:
 
 
 def _cited(what: str, words: str, bibtex: str) -> Cited:
-    """What nobody has an entry for is cited in its own words."""
+    """Cite something; in its own words where nobody has an entry for it."""
     found = publications(words, bibtex)
     return Cited(what, words, found or ([unpublished_source(what, words)] if words else []))
 
 
 def _named(text: str) -> str:
-    """Where a docstring names its sources: from "Source:" on, else the paragraphs that hold a year."""
+    """Find where a docstring names its sources: from "Source:" on, else the paragraphs that hold a year."""
     paragraphs = text.split("\n\n")
     said = [found[0] for each in paragraphs if (found := _SAID.search(each))]
     dated = [each for each in paragraphs if _YEAR.search(each)]

@@ -1,4 +1,4 @@
-"""What a page's tables are made of, and how numbers and long lists are written in them.
+"""Tables of a page, and how numbers and long lists are written in them.
 
 Symbols and words of inputs and columns as HTML: the mathtext of the figures, with real letters.
 """
@@ -6,42 +6,51 @@ Symbols and words of inputs and columns as HTML: the mathtext of the figures, wi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from html.entities import html5
-from itertools import islice
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import pandas as pd
 from markupsafe import Markup, escape
 
 from frictionlab.scene.waveforms import told
-from frictionlab.values.columns import symbol, unit_shown, word
+from frictionlab.values.columns import symbol, typeset, unit_shown, word
+from frictionlab.values.quantities import Written
 
-_RENAMED = {"varphi": "phi", "varepsilon": "epsilon"}  # what TeX calls so
+_RENAMED = {"varphi": "phi", "varepsilon": "epsilon", "infty": "infin"}  # what TeX calls so
 _ACCENTS = {"bar": "\u0304", "hat": "\u0302", "dot": "\u0307", "tilde": "\u0303"}
-_LEVELS = {"_": "sub", "^": "sup"}
-_TOKEN = re.compile(
-    r"\\mathrm\{(?P<upright>[^}]*)\}"
-    r"|\\(?P<accent>bar|hat|dot|tilde)\s*(?:\{(?P<braced>[^}]*)\}|(?P<under>\\[A-Za-z]+|\w))"
-    r"|\\(?P<name>[A-Za-z]+)|\{(?P<group>[^}]*)\}|(?P<level>[_^])|(?P<plain>.)"
-)
+_LEVELS = {"_": "<sub>{}</sub>", "^": "<sup>{}</sup>"}
+_AS_HTML: dict[str, Callable[[re.Match[str]], str]] = {
+    r"\\(bar|hat|dot|tilde)\s*(?:\{([^}]*)\}|(\\[A-Za-z]+|\w))": lambda found: (
+        (found[2] or found[3]) + _ACCENTS[found[1]]
+    ),
+    r"\\(?!mathrm)([A-Za-z]+)": lambda found: html5.get(f"{_RENAMED.get(found[1], found[1])};", found[1]),
+    r"([_^])(?:\{([^}]*)\}|(\\mathrm\{[^}]*\}|.))": lambda found: _LEVELS[found[1]].format(
+        found[2] or found[3]
+    ),
+    r"\\mathrm\{([^}]*)\}|(<[^>]*>|&\w+;)|([^\W\d_][\u0300-\u036f]*)": lambda found: (
+        found[1] or found[2] or f"<i>{found[3]}</i>"
+    ),
+}
+"""Patterns of mathtext and what stands for them: accents, names of letters, levels, then letters in italics."""
 
 
 @cache
 def symbol_html(name: str) -> Markup:
-    """The symbol of an input or column; for one without a symbol the last part of its path."""
+    """Return the symbol of an input or column; for one without a symbol the last part of its path."""
     return html(symbol(name))
 
 
 def word_html(name: str) -> Markup:
-    """The words of an input or column with its symbol and unit."""
+    """Return the words of an input or column with its symbol and unit."""
     return html(word(name))
 
 
 @cache
 def unit_html(name: str) -> Markup:
-    """The unit of an input or column with a space before it; nothing where it has none."""
+    """Return the unit of an input or column with a space before it; nothing where it has none."""
     return html(f" {unit_shown(name)}") if unit_shown(name) else Markup("")
 
 
@@ -52,34 +61,10 @@ def html(text: str) -> Markup:
 
 
 def _math(text: str) -> Markup:
-    shown, level = Markup(""), ""
-    for token in _TOKEN.finditer(text):
-        if token["level"]:
-            level = _LEVELS[token["level"]]
-            continue
-        atom = _atom(token)
-        shown += Markup("<{0}>{1}</{0}>").format(Markup(level), atom) if level else atom
-        level = ""
-    return shown
-
-
-def _atom(token: re.Match[str]) -> Markup:
-    if token["upright"] is not None:
-        return escape(token["upright"])
-    if token["group"] is not None:
-        return _math(token["group"])
-    if token["accent"]:
-        return _italic("".join(_letters(token["braced"] or token["under"])) + _ACCENTS[token["accent"]])
-    return _italic("".join(_letters(token[0])))
-
-
-def _letters(text: str) -> Iterator[str]:
-    for name, plain in re.findall(r"\\([A-Za-z]+)|(.)", text):
-        yield html5.get(f"{_RENAMED.get(name, name)};", name) or plain
-
-
-def _italic(text: str) -> Markup:
-    return Markup("<i>{}</i>").format(text) if text[:1].isalpha() else escape(text)
+    shown = str(escape(text))
+    for pattern, written in _AS_HTML.items():
+        shown = re.sub(pattern, written, shown)
+    return Markup(shown)
 
 
 Cell = str | Markup
@@ -102,22 +87,25 @@ class Grid(NamedTuple):
 
 def grid(
     caption: str,
-    head: Sequence[Cell],
-    rows: Iterable[Sequence[Cell]],
+    columns: Mapping[Cell, Callable[[Any], Cell]],
+    of: Sequence[Any],
     what: str = "rows",
     file: str = "results.csv",
-    total: int = 0,
 ) -> Grid:
-    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` of all its rows.
+    """A table of at most ``MOST_ROWS`` things; columns that are empty in every row are left out.
 
-    what: they are; file: has all of them. total: how many they are, of an iterator.
+    columns: heads, and what is told of a thing below each. what: the things are; file: has all of them.
     """
-    shown = list(islice(rows, MOST_ROWS))
-    left = (len(rows) if isinstance(rows, list) else total) - len(shown)
-    kept = [place for place in range(len(head)) if any(row[place] for row in shown)]
+    cells = {head: [minus(cell(each)) for each in of[:MOST_ROWS]] for head, cell in columns.items()}
+    kept = {head: told for head, told in cells.items() if any(told)}
+    left = max(0, len(of) - MOST_ROWS)
     below = f"... and {left} more {what}, all of them in {file}" if left else ""
-    written = [[minus(row[place]) for place in kept] for row in shown]
-    return Grid(caption, [head[place] for place in kept], written, below)
+    return Grid(caption, [*kept], [*zip(*kept.values(), strict=True)], below)
+
+
+def in_order(*heads: Cell) -> dict[Cell, Callable[[Any], Cell]]:
+    """Columns of things that are rows of cells already."""
+    return {head: itemgetter(place) for place, head in enumerate(heads)}
 
 
 def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
@@ -127,19 +115,20 @@ def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
 
 
 def setting(name: str, value: Any, digits: int = 6) -> Markup:
-    """One input with its value and unit, on one line where it is short."""
-    told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit_html(name))
+    """Return one input with its value and unit, on one line where it is short."""
+    unit = "" if isinstance(value, Written) else unit_html(name)
+    told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit)
     short = len(told.striptags()) <= SHORT_SETTING
     return Markup('<span class="short">{}</span>').format(told) if short else told
 
 
 def number(value: Any, digits: int = 6) -> Cell:
-    """A number to so many digits, words for a waveform of points; nothing for one that does not apply."""
-    if isinstance(value, str):
-        return told(value).words if value.startswith("points ") else value
-    if value is None or pd.isna(value):
-        return ""
-    return minus(f"{value:.{digits}g}")
+    """A number to so many digits, or with the unit it was written in; words; nothing for one that does not apply."""
+    if isinstance(value, Written):
+        return html(typeset(value.text))
+    if isinstance(value, str | bool):
+        return told(str(value)).words if str(value).startswith("points ") else str(value)
+    return "" if value is None or pd.isna(value) else minus(f"{value:.{digits}g}")
 
 
 def minus(text: Cell) -> Cell:
@@ -157,12 +146,6 @@ def the(method: str) -> str:
     return f"the {method}" if " " in method else method
 
 
-def begun(sentence: Markup) -> Markup:
-    """A sentence that begins with words of ours, with a capital."""
-    ours = sentence.startswith(("the ", "at "))
-    return Markup(sentence[:1].upper() + sentence[1:]) if ours else sentence
-
-
 def joined_values(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
     return Markup(", ").join(map(escape, dict.fromkeys(words)))
@@ -175,10 +158,8 @@ def listed(parts: Sequence[Cell]) -> Markup:
     return Markup("{} and {}").format(Markup(between).join(most), last) if most else last
 
 
-def named(values: Mapping[str, Any], one_law: bool) -> Markup:
-    """A curve by its law, left out where there is only one, and the values that tell it apart."""
+def named(values: Mapping[str, Any]) -> Markup:
+    """A curve by its law, and the values that tell it apart."""
     told = [setting(name, value) for name, value in values.items() if name != "law" and not pd.isna(value)]
     law, where = escape(str(values["law"])), Markup(" and ").join(told)
-    if not where or one_law:
-        return where or law
-    return Markup("{} with {}").format(law, where)
+    return Markup("{} with {}").format(law, where) if where else law

@@ -188,7 +188,7 @@ class Ranking:
 
     ranked: of each, its law and the values that tell it apart. points: the inputs of each point. mean, error: point
     by point for each of them, NaN where it has none. first: the place of the highest, ``NOBODY`` where it is not
-    above the second by more than both errors; excess, excess_error: of the highest over the second.
+    above the second by more than both errors.
     """
 
     ranked: Sequence[Mapping[str, Any]]
@@ -197,8 +197,6 @@ class Ranking:
     error: Floats
     first: NDArray[np.int64]
     second: NDArray[np.int64]
-    excess: Floats
-    excess_error: Floats
 
     @property
     def stretches(self) -> list[tuple[int, int, int]]:
@@ -268,8 +266,7 @@ def _ranked(best: pd.DataFrame, who: list[str], on: list[str]) -> Ranking | None
     mean, error = mean[shared], error[shared]
     order = np.argsort(np.where(np.isfinite(mean), -mean, np.inf), axis=1, kind="stable")
     rows, first, second = np.arange(len(mean)), order[:, 0], order[:, 1]
-    excess = mean[rows, first] - mean[rows, second]
-    excess_error = error[rows, first] + error[rows, second]
-    first = np.where(excess > excess_error + ROUNDING_OF_MEANS, first, NOBODY)
+    excess, slack = mean[rows, first] - mean[rows, second], error[rows, first] + error[rows, second]
+    first = np.where(excess > slack + ROUNDING_OF_MEANS, first, NOBODY)
     ranked = best[who].drop_duplicates().to_dict("records")
-    return Ranking(ranked, points, mean, error, first, second, excess, excess_error)
+    return Ranking(ranked, points, mean, error, first, second)

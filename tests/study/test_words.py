@@ -7,11 +7,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import pytest
 
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
-from frictionlab.report.question import scene_sentences
 from frictionlab.runner.pieces import blocks_of_table, task_of
 from frictionlab.runner.store import Keys
 from frictionlab.runner.table import inputs
@@ -135,31 +133,6 @@ def test_words_tell_curves_apart_and_never_lie_along_the_axis() -> None:
         ("scene.drive.waveform", each) for each in ("sine", "square", FORMULA)
     ]
     assert len(family.panels) == 4
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({}, "The normal load varies as a sine; the stiffness of bristles follows it."),
-        (
-            {"drive": {"amplitude": 1, "frequency": 2, "waveform": "square"}},
-            "on a moving belt, shaken along it. The load along x1 varies as a square wave.",
-        ),
-        (
-            {"belt_vibration": {"velocity_amplitude": 1, "waveform": SUM, "frequency_ratio": "3/2"}},
-            f"The belt vibrates along its motion, its velocity as {FORMULA} at 3/2 times the drive's frequency.",
-        ),
-        (
-            {
-                "drive": {"amplitude": 1, "frequency": 2, "direction": 30},
-                "transverse": {"natural_frequency": 1, "damping_ratio": 0.1},
-            },
-            "in the plane, on a moving belt, shaken at 30° to its motion.",
-        ),
-    ],
-)
-def test_the_page_tells_in_words_what_is_no_sine(change: dict[str, Any], said: str) -> None:
-    assert said in scene_sentences(parse_study(study({}, scene=SCENE | change)))
 
 
 SI: dict[str, Any] = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -60,3 +61,16 @@ def test_no_two_files_of_tests_have_one_name() -> None:
     files = [path.name for path in Path(__file__).parent.rglob("test_*.py")]
 
     assert sorted(set(files)) == sorted(files)  # else pytest collects one of them and stops at the other
+
+
+def test_docstrings_begin_with_a_verb_or_a_noun() -> None:
+    bad = re.compile(r'^\s*r?"""(The|What|Whether|Of|How|Where)\b')
+    sources = [*PACKAGE.rglob("*.py"), *(PACKAGE.parent / "plugins").rglob("*.py")]
+    found = [
+        f"{path}: {line}"
+        for path in sources
+        for line in path.read_text("utf-8").split("\n")
+        if bad.match(line)
+    ]
+
+    assert found == []

@@ -27,7 +27,7 @@ class BenchBlock(Measured):
 
     @cached_property
     def study(self) -> Study:
-        """The scene, laws and sweep as the study they are."""
+        """Return the scene, laws and sweep as the study they are."""
         return self.study_of()
 
     def study_of(self, **changed: Any) -> Study:

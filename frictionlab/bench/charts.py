@@ -166,7 +166,7 @@ def _draw_front(axes: Axes, best: pd.DataFrame) -> None:
 LOWEST = 1e-16
 """Errors below are drawn here."""
 RIGHT = 9.7
-"""Where the slopes stand."""
+"""Places of the slopes."""
 NEAREST_LABELS = 1.3
 """Powers of ten between two numbers at the right end."""
 
@@ -201,7 +201,7 @@ def orders_figure(table: pd.DataFrame) -> Figure:
 
 
 def _label_slopes(axes: Axes, own: pd.DataFrame, looks: Mapping[str, Look]) -> None:
-    """The slopes, at the right end and as high as the last errors fitted, but not one upon another."""
+    """Write the slopes, at the right end and as high as the last errors fitted, but not one upon another."""
     height = math.log10(LOWEST) - NEAREST_LABELS
     fitted = own.dropna(subset="order").assign(end=lambda rows: [errors[-1] for errors in rows["errors"]])
     for _, row in fitted.sort_values("end", kind="stable").iterrows():
@@ -286,7 +286,7 @@ def _draw_stability(axes: Axes, points: pd.DataFrame) -> Any:
 
 
 def _stability_legend(table: pd.DataFrame) -> list[Any]:
-    """The entries for what the pictures of a solver hold."""
+    """Return the entries for what the pictures of a solver hold."""
     told_so = Patch(facecolor="white", edgecolor="0.2", hatch="////", label="wrong, and told so")
     entries: list[Any] = [told_so, _entry("wrong without a word", CROSS)]
     if np.isfinite(table["predicted_limit"]).any():
@@ -300,7 +300,7 @@ def _stability_legend(table: pd.DataFrame) -> list[Any]:
 
 
 _LEVELS = (1e-16, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1.0)
-"""Of errors: a shade between two of them, darker for a smaller error."""
+"""Edges of errors: a shade between two of them, darker for a smaller error."""
 _WITHOUT_ERROR: dict[str, Look] = {
     "refused": {"facecolor": "white", "edgecolor": "0.6", "hatch": "////"},
     "failed": {"facecolor": "0.85", "edgecolor": "#b2182b", "hatch": "xxxx"},
@@ -308,7 +308,7 @@ _WITHOUT_ERROR: dict[str, Look] = {
     "no error known": {"facecolor": "white", "edgecolor": "0.6"},
     "reference too coarse to tell": {"facecolor": "none", "edgecolor": "0.5", "hatch": "\\\\\\\\"},
 }
-"""Of cells without a shade; of the last the distance from the reference is above the stated error, but not with the
+"""Marks of cells without shade; in the last the distance to the reference is above the stated error, but not with the
 reference's own added."""
 _LINES: dict[str, Look] = {
     "V_lin": {"color": "white", "linestyle": "solid"},

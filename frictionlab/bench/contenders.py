@@ -103,7 +103,7 @@ def built(kind: type[_RecordT], given: Any) -> _RecordT:
 
 
 def mapping(given: Any) -> dict[str, Any]:
-    """The value if it is a mapping. Raises ValueError if it is none."""
+    """Return the value if it is a mapping. Raises ValueError if it is none."""
     if not isinstance(given, dict):
         raise ValueError("must be a mapping")
     return given
@@ -116,7 +116,7 @@ def refuse(notes: Notes) -> None:
 
 
 class _Asked(Record):
-    """What a method or peer is asked for beside its own parameters."""
+    """Settings of a method or peer beside its own parameters."""
 
     tolerance: Positive = 1e-8
     points: AtLeastOne | None = None

@@ -70,7 +70,7 @@ class Workload:
 
     @property
     def speeds(self) -> list[float]:
-        """The belt speeds."""
+        """Return the belt speeds."""
         return [scene.belt_speed for scene in self.scenes]
 
     def known(self) -> KnownReferences:
@@ -81,7 +81,7 @@ class Workload:
 def workloads(
     study: Study, references: tuple[ReferenceSource, ...], repeats: int, seconds: float
 ) -> Iterator[tuple[str, Workload]]:
-    """The curve of each law, by its label."""
+    """Yield the curve of each law, by its label."""
     for along in study.curves():
         scenes = sorted(along.scenes, key=lambda scene: scene.belt_speed)
         yield along.law_label, Workload(tuple(scenes), along.law, references, repeats, seconds)
@@ -126,7 +126,7 @@ class BenchCurve:
 
 
 def largest_error(known: KnownReferences) -> float:
-    """The largest error of any reference, NaN without one."""
+    """Return the largest error of any reference, NaN without one."""
     return float(pd.concat([found["error"] for _, found in known]).max())
 
 
@@ -187,7 +187,7 @@ def _errors(found: pd.DataFrame, trusted: pd.DataFrame, side: str) -> dict[str, 
 
 
 def _reason(found: pd.DataFrame, row: dict[str, Any]) -> str:
-    """The most frequent reason of a point without a number, or why there is no error."""
+    """Return the most frequent reason of a point without a number, or why there is no error."""
     reasons = Counter(found.loc[found["status"] != "ok", "reason"])
     if reasons:
         return str(reasons.most_common(1)[0][0])

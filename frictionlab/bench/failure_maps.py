@@ -32,7 +32,7 @@ OF_FRICTION_TO_LOAD = ("scene.normal_load", "scene.drive.amplitude", "scene.driv
 PEER_MARGIN = 10.0
 MOTION = ("stick_fraction", "reversals")
 _HALVINGS = 30
-"""Of the interval between two values of the grid in which an edge lies."""
+"""Parts of the interval between two values of the grid in which an edge lies."""
 
 
 class NamedPoint(Record):
@@ -81,7 +81,7 @@ class FailureMap(OwnBlock):
 
     @cached_property
     def paths(self) -> tuple[str, str]:
-        """The path of the belt speed and that of the other quantity."""
+        """Return the path of the belt speed and that of the other quantity."""
         one, other = self.study.sweep
         return (one, other) if one in BELT_SPEEDS else (other, one)
 
@@ -101,7 +101,7 @@ class FailureMap(OwnBlock):
 
     @cached_property
     def grid_rows(self) -> list[MapRow]:
-        """The grid, a row for each value, which ascend. Raises StudyError where one cannot be built."""
+        """Return the grid, a row for each value, which ascend. Raises StudyError where one cannot be built."""
         speeds, values = map(self._swept, self.paths)
         return [self.row(value, speeds) for value in values.tolist()]
 
@@ -112,14 +112,14 @@ class FailureMap(OwnBlock):
         return [*self.grid_rows, *named]
 
     def row(self, value: float, speeds: Sequence[float] | Floats, name: str = "") -> MapRow:
-        """The scenes at any value and belt speeds."""
+        """Return the scenes at any value and belt speeds."""
         along = tuple(float(speed) for speed in speeds)
         sweep: dict[str, tuple[GridValue, ...]] = dict(zip(self.paths, (along, (value,)), strict=True))
         (curve,) = replace(self.study, sweep=sweep, ranges={}).curves()
         return MapRow(value, curve.scenes, curve.law, name)
 
     def ordinate(self, row: MapRow) -> float:
-        """What a row is drawn at: its value, or friction over load where the quantity makes that vary."""
+        """Return what a row is drawn at: its value, or friction over load where the quantity makes that vary."""
         return row.friction_to_load if self.paths[1] in OF_FRICTION_TO_LOAD else row.value
 
     # --- what a solver says of it ---------------------------------------------------------------------------------
@@ -141,7 +141,7 @@ class FailureMap(OwnBlock):
 
     @cached_property
     def known(self) -> list[tuple[ReferenceSource, pd.DataFrame]]:
-        """What every reference says of every point, the first method with the columns of ``MOTION``."""
+        """Return what every reference says of every point, the first method with the columns of ``MOTION``."""
         first = next((each for each in self.references if not isinstance(each.solver, Peer)), None)
         return [(each, self._known(each, MOTION if each is first else ())) for each in self.references]
 
@@ -149,7 +149,7 @@ class FailureMap(OwnBlock):
         return self._of_rows(lambda row: known_means(reference, row.scenes, row.law, more))
 
     def measured(self, contender: Contender) -> pd.DataFrame:
-        """What this solver says of every point, and how far that is from the first reference of another kind.
+        """Return what this solver says of every point, and how far that is from the first reference of another kind.
 
         ``silent`` is a number that is wrong without a word: for a method its true error is above the error it states,
         for a peer above ten times the tolerance asked, each with the reference's own error added.
@@ -178,7 +178,7 @@ class FailureMap(OwnBlock):
     # --- what is drawn --------------------------------------------------------------------------------------------
 
     def picture(self, table: pd.DataFrame) -> FailurePicture:
-        """The map with the points of a solver."""
+        """Return the map with the points of a solver."""
         ordinates = np.array([self.ordinate(row) for row in self.grid_rows])
         rising, x = np.argsort(ordinates), self.grid_rows[0].scenes.belt_speeds
         grid = table[table["point"] == ""].sort_values("ordinate", kind="stable")
@@ -194,7 +194,7 @@ class FailureMap(OwnBlock):
         return word(f"law.{parameter}" if kind.startswith("laws.") else quantity, 22)
 
     def motions(self) -> dict[str, Floats]:
-        """Where on the grid slip reverses or sticks, and where the mass sticks, by the first method among references.
+        """Find where slip reverses or sticks, and where the mass sticks, by the first method of references.
 
         1 or 0, NaN where that is not known.
         """
@@ -210,7 +210,7 @@ class FailureMap(OwnBlock):
         return np.array([friction_free_velocity(row.scenes[0], row.law) for row in self.grid_rows])
 
     def edges(self) -> dict[str, list[float]]:
-        """The ordinates at which a condition on the other quantity alone changes.
+        """Return the ordinates at which a condition on the other quantity alone changes.
 
         Theorem T1 proves that the steady state is the only one and attracts every start; static friction can hold the
         mass against the load on a belt at rest.

@@ -16,7 +16,7 @@ from frictionlab.bench.failure_maps import FailureMap
 from frictionlab.bench.result import SectionResult, Tell, file_stem, nothing_measured
 
 OUTCOMES = ("ok", "refused", "failed", "not_unique", "silent")
-"""What a point can come to."""
+"""Outcomes of a point."""
 OUTCOME_WORDS = {"not_unique": "not unique", "silent": "wrong, silent"}
 MAPS_CAPTION = (
     "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
@@ -26,7 +26,7 @@ MAPS_CAPTION = (
 
 @dataclass(frozen=True)
 class FailureSection:
-    """The maps one method or peer is measured on, each with its own setting."""
+    """Maps one method or peer is measured on, each with its own setting."""
 
     label: str
     maps: tuple[tuple[FailureMap, Contender], ...]
@@ -54,7 +54,7 @@ class FailureSection:
         return SectionResult(self.name, title, table, said, figure, MAPS_CAPTION, style=style)
 
     def _figure(self, title: str, tables: Sequence[pd.DataFrame]) -> Any:
-        """The maps that are not refused everywhere, the others in words."""
+        """Return the maps that are not refused everywhere, the others in words."""
         maps, refused = [], list[str]()
         for (drawn, _), table in zip(self.maps, tables, strict=True):
             if (table["outcome"] == "refused").all():

@@ -28,7 +28,7 @@ ALL_OF_IT = BeforeValidator(lambda given: {} if given is True else given)
 
 
 def _blocks(kind: type[Any]) -> Any:
-    """The type of a list of blocks; a mistake in one is told by its path in the block."""
+    """Return the type of a list of blocks; a mistake in one is told by its path in the block."""
     return Annotated[tuple[Annotated[Any, BeforeValidator(lambda given: built(kind, given))], ...], FILLED]
 
 
@@ -67,7 +67,7 @@ class UnknownCurve(Exception):
 
 @dataclass(frozen=True)
 class Bench:
-    """The sections of a list, curves first."""
+    """Sections of a list, curves first."""
 
     name: str
     title: str
@@ -75,21 +75,21 @@ class Bench:
 
     @property
     def names(self) -> list[str]:
-        """Of all that is measured."""
+        """Names of all that is measured."""
         return [section.name for section in self.sections]
 
     @property
     def curves(self) -> list[BenchCurve]:
-        """The curves among them."""
+        """Return the curves among them."""
         return [section for section in self.sections if isinstance(section, BenchCurve)]
 
     @property
     def parts(self) -> str:
-        """What its sections are called."""
+        """Return what its sections are called."""
         return "curves" if len(self.curves) == len(self.sections) else "curves and sections"
 
     def only(self, names: Sequence[str]) -> Bench:
-        """The curves and sections of these names alone; all where none is named. Raises UnknownCurve."""
+        """Return the curves and sections of these names alone; all where none is named. Raises UnknownCurve."""
         if unknown := [name for name in names if name not in self.names]:
             part = "curve" if self.parts == "curves" else "curve or section"
             raise UnknownCurve(f"no {part} '{unknown[0]}' in the list; there are {', '.join(self.names)}")
@@ -113,7 +113,7 @@ def load_bench(path: FilePath) -> Bench:
 
 
 def _sections(keys: ListKeys, notes: Notes) -> list[Section]:
-    """The sections of a list, curves first."""
+    """Return the sections of a list, curves first."""
     sections = list[Section](keys.curves(notes))
     sections += [keys.orders] if keys.orders else []
     sections += keys.stability.sections() if keys.stability else []
@@ -134,7 +134,7 @@ def _refuse_equal(names: Sequence[str], path: KeyPath, notes: Notes) -> None:
 
 
 def _source(path: FilePath) -> Source:
-    """The file's values; what is no readable file is told in the words of a list."""
+    """Return the file's values; what is no readable file is told in the words of a list."""
     try:
         return read_file(path)
     except StudyError as problem:

@@ -50,7 +50,7 @@ class ModelsBlock(OwnBlock):
 
     @cached_property
     def studies(self) -> list[tuple[str, Study]]:
-        """The study on the whole scene, and that without each part that simpler scenes lack, by what is left out."""
+        """Study on the whole scene, and that without each part that simpler scenes lack, by what is left out."""
         return [(WHOLE, self.study), *self._simpler()]
 
     def _simpler(self) -> Iterator[tuple[str, Study]]:
@@ -106,7 +106,7 @@ class ModelsSection:
 
 
 def _summary(head: str, best: pd.DataFrame) -> str:
-    """The front, from the cheapest model to the nearest one."""
+    """Return the front, from the cheapest model to the nearest one."""
     lines = [head]
     for _, row in best.iterrows():
         price = f"{row['mean_us']:,.3g} us a point"
@@ -116,12 +116,12 @@ def _summary(head: str, best: pd.DataFrame) -> str:
 
 
 def model_label(row: Any) -> str:
-    """The law, and what the scene lacks."""
+    """Return the law, and what the scene lacks."""
     return str(row["law"] if row["scene"] == WHOLE else f"{row['law']}, {row['scene']}")
 
 
 def front(table: pd.DataFrame) -> pd.DataFrame:
-    """Of rows that answer all, the ones to which none cheaper is as near, by a tenth; from the cheapest on."""
+    """Return, of rows that answer all, those to which none cheaper is as near, by a tenth; from the cheapest on."""
     answered = table[(table["ok"] == table["points"]) & table["largest_error"].notna()]
     rising = answered.sort_values(["mean_us", "largest_error"])
     best, least = list[Any](), float("inf")

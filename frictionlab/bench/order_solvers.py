@@ -1,4 +1,4 @@
-"""The kinds of motion on which orders are measured: one scene and law each.
+"""Kinds of motion on which orders are measured: one scene and law each.
 
 What is refined: the steps, widths or tolerances of every solver, and its errors on a motion at each of them.
 """
@@ -28,7 +28,7 @@ from frictionlab.values.quantities import Floats
 _RESONANCE = Scene(damping_ratio=0.1, normal_load=10, belt_speed=20, drive=Drive(amplitude=10, frequency=1))
 """Strong friction at resonance: without friction the velocity has the amplitude 50."""
 _HELD = Scene(damping_ratio=0.1, normal_load=10, belt_speed=1, drive=Drive(amplitude=2.5, frequency=0.5))
-"""The load is below friction: the mass sticks most of the time."""
+"""Load is below friction: the mass sticks most of the time."""
 _DRIVE = Drive(unbalance=10, frequency=4)
 _ACROSS = Transverse(natural_frequency=1, damping_ratio=0.1, load=Load(unbalance=10))
 _IN_PHASE = Scene(damping_ratio=0.1, normal_load=1, belt_speed=5, drive=_DRIVE, transverse=_ACROSS)
@@ -82,7 +82,7 @@ LAPS = 3000
 GOLDEN_PHASE = 0.5 * (math.sqrt(5.0) - 1.0)
 HALVED_WIDTHS = np.array([2.0 * 0.5**k for k in range(12)])
 ACCURACY = 1e-12
-"""Of steps on smoothed friction, so short that the width alone matters."""
+"""Steps on smoothed friction, so short that the width alone matters."""
 TOLERANCES = np.array([1e-2 * 0.1**k for k in range(9)])
 
 
@@ -161,7 +161,7 @@ def _by_tolerance(method: Method) -> OrderSolver:
 
 
 def with_phase(scene: Scene, degrees: float) -> Scene:
-    """The scene as it is so much later in its period: the same mean friction."""
+    """Return the scene as it is so much later in its period: the same mean friction."""
     assert scene.drive is not None
     later: dict[str, Any] = {"drive": scene.drive.model_copy(update={"phase": scene.drive.phase + degrees})}
     if scene.transverse is not None and scene.transverse.load is not None:

@@ -25,7 +25,7 @@ STEADY_SLOPES = 0.12
 FEWEST_SLOPES = 2
 """Local slopes of an asymptotic range; one more where they are those between neighbours."""
 MOST_SETTINGS = 7
-"""Of a fit: the finest ones."""
+"""Most settings of a fit: the finest ones."""
 FLOOR_OF_ERRORS = 20.0
 """Errors below so many times what the reference is known to are left out."""
 
@@ -47,7 +47,7 @@ NO_FIT = Fit(math.nan, math.nan, 0, -1, False)
 
 
 def fit_order(sizes: Floats, errors: Floats, known: float) -> Fit:
-    """The order of errors at sizes that shrink from each to the next; known: error of the reference."""
+    """Return the order of errors at sizes that shrink from each to the next; known: error of the reference."""
     first, last = _longest_run(np.isfinite(errors) & (errors > FLOOR_OF_ERRORS * known))
     if last - first < 1:
         return NO_FIT
@@ -79,7 +79,7 @@ def _longest_run(good: np.ndarray) -> tuple[int, int]:
 
 
 def _steady_at_the_end(slopes: list[float]) -> int:
-    """How many of the last slopes differ by little enough."""
+    """Return how many of the last slopes differ by little enough."""
     last = slopes[::-1]
     steady = (n for n in range(len(last), 0, -1) if np.ptp(last[:n]) <= STEADY_SLOPES)
     return next(steady, 0)
@@ -129,7 +129,7 @@ def theory_of(solver: str, motion: str) -> tuple[float, str]:
 REFERENCE_TOLERANCE = 1e-12
 """Tolerance of a reference."""
 LEAST_REFERENCE_ERROR = 1e-14
-"""What no reference is known better than."""
+"""Accuracy that no reference exceeds."""
 ORDERS_CAPTION = (
     "Errors of the mean friction; each refinement halves the step or the smoothing width, or asks for a tenth of the "
     "tolerance. The steeper, the higher the order; the number is the fitted slope over the setting, in brackets and "
@@ -185,7 +185,7 @@ class OrdersSection(Record):
 
 
 def reference_mean(motion: KindOfMotion) -> tuple[float, float, str]:
-    """The mean friction of a motion, how well it is known, and the method that says so: exact where it can."""
+    """Return the mean friction of a motion, how well it is known, and the method that says so: exact where it can."""
     method = Exact() if Exact().refusal(motion.scene, motion.law) is None else Shooting()
     found = solve_points(method, [motion.scene], motion.law, REFERENCE_TOLERANCE).iloc[0]
     return float(found["mean"]), max(float(found["error"]), LEAST_REFERENCE_ERROR), method.name

@@ -39,7 +39,7 @@ ENTRY_KEYS = {
     *("kind", "name", "title", "notes", "missing", "summary", "tables", "pictures"),
     *("frictionlab", "date", "cores", "python", "platform", "processor", "packages"),
 }
-"""What the page asks of an entry; one without them is another version's."""
+"""Keys that the page asks of an entry; one without them is another version's."""
 MOST_ROWS_ON_PAGE = 200
 ROWS_OF_MANY = 20
 """Shown of a table with more rows than a page holds."""
@@ -100,7 +100,7 @@ def write_table(measured: SectionResult, folder: Path) -> list[str]:
 
 
 def markdown(measured: SectionResult, file: Path) -> str:
-    """The table of a curve to read, with what its errors are measured against."""
+    """Return the table of a curve to read, with what its errors are measured against."""
     heading = f"## {measured.name}{': ' + measured.title if measured.title else ''}"
     notes = [*([left_out_line(measured.left_out)] if measured.left_out else []), *measured.notes]
     table = markdown_lines(without_empty(curve_cells(_table(file))))
@@ -129,14 +129,14 @@ def _print_below(figure: Figure, text: str) -> None:
 
 
 def entry_of(measured: SectionResult, tables: Sequence[str], pictures: Sequence[Any]) -> dict[str, Any]:
-    """The entry of a curve or section: its files, and what is said of it."""
+    """Return the entry of a curve or section: its files, and what is said of it."""
     said = {name: getattr(measured, name) for name in ("kind", "name", "title", "summary")}
     lists = {"notes": [*measured.notes], "missing": {**measured.left_out}}
     return {**said, **lists, "tables": [*tables], "pictures": [*pictures], **circumstances()}
 
 
 def read_account(folder: Path) -> dict[str, dict[str, Any]]:
-    """The entries of a folder by the stem of their files; none where it has no account that can be read."""
+    """Return the entries of a folder by the stem of their files; none where it has no account that can be read."""
     try:
         found = json.loads((folder / ACCOUNT).read_text(encoding="utf-8"))
         entries = {str(stem): dict(entry) for stem, entry in found["parts"].items()}
@@ -149,7 +149,7 @@ def read_account(folder: Path) -> dict[str, dict[str, Any]]:
 
 
 def bench_page(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> str:
-    """The page of a folder with these entries of its account.
+    """Return the page of a folder with these entries of its account.
 
     The section of a peer that is not installed is left out: a line at the head of the page says so.
     """
@@ -184,7 +184,7 @@ def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _table(file: Path) -> pd.DataFrame:
-    """The rows of a file as texts; none where it cannot be read."""
+    """Return the rows of a file as texts; none where it cannot be read."""
     try:
         return pd.read_csv(file, dtype=str, keep_default_na=False)
     except (OSError, ValueError):
@@ -192,7 +192,7 @@ def _table(file: Path) -> pd.DataFrame:
 
 
 def _overview(curves: Sequence[Mapping[str, Any]]) -> Grid | None:
-    """The fastest on each curve: of the methods to every error of interest, of other libraries to one."""
+    """Return the fastest on each curve: of the methods to every error of interest, of other libraries to one."""
     heads = ["curve", *(f"to {target:.0e}" for target in TARGETS), f"other libraries, to {TARGETS[1]:.0e}"]
     asked, rows = [*(("method", target) for target in TARGETS), ("peer", TARGETS[1])], []
     for part in curves:
@@ -203,7 +203,7 @@ def _overview(curves: Sequence[Mapping[str, Any]]) -> Grid | None:
 
 
 def _shown(name: str, table: pd.DataFrame, kind: str) -> dict[str, Any]:
-    """The table of a file without columns that are empty in every row, and the file with all of it."""
+    """Return the table of a file without columns that are empty in every row, and the file with all of it."""
     few = table if len(table) <= MOST_ROWS_ON_PAGE else table.head(ROWS_OF_MANY)
     cells, caption = any_cells(few), f"{name}: {counted(len(table), 'row')}"
     if kind == "curve":

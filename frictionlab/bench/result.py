@@ -46,7 +46,7 @@ class Section(Protocol):
 
 
 def nothing_measured(name: str, title: str, why: str) -> SectionResult:
-    """The result of a section of a solver that is left out."""
+    """Return the result of a section of a solver that is left out."""
     return SectionResult(
         name, title, pd.DataFrame(), f"{name}: {why}", lambda: None, "", left_out={name: why}
     )

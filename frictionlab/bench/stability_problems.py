@@ -18,7 +18,7 @@ _SHAKEN = Scene(damping_ratio=0.5, normal_load=1.0, belt_speed=1.0, drive=Drive(
 _FASTEST = 5.0
 _LOAD = 10.0
 _CARRIED = Scene(damping_ratio=0.5, normal_load=_LOAD, belt_speed=0.5, drive=Drive(amplitude=3, frequency=1))
-"""The load is below friction: smoothed friction lets the mass creep where it would stick."""
+"""Load is below friction: smoothed friction lets the mass creep where it would stick."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class StabilityProblem:
 
 
 def width_at(rate: float) -> float:
-    """The smoothing width whose slope at rest makes slip decay at this rate."""
+    """Return the smoothing width whose slope at rest makes slip decay at this rate."""
     return _LOAD * MU / rate
 
 

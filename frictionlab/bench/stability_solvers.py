@@ -84,7 +84,7 @@ class MappedSolver:
     held: float = math.inf
 
     def missing(self) -> str | None:
-        """How to install it where it is not there, which only heyoka may be."""
+        """Return how to install it where it is not there, which only heyoka may be."""
         return Heyoka().missing() if self.name == "heyoka" else None
 
 
@@ -116,7 +116,7 @@ def known_state(problem: str, rate: float, smoothed: bool = False) -> KnownState
 
 
 def local_rate(problem: StabilityProblem, known: KnownState, rate: float) -> float:
-    """The rate at the largest slip that is really met, for bristles; else as it was asked for."""
+    """Return the rate at the largest slip that is really met, for bristles; else as it was asked for."""
     law: Any = known.law
     return float(law.largest_rate(known.most_slip)) if problem.name == "bristle" else rate
 
@@ -144,7 +144,7 @@ NOT_OFFERED = "march offers theta 0.5 and 1"
 
 
 def _off_at(known: KnownState, steps: int, theta: float) -> float:
-    """The error of a theta that march does not offer."""
+    """Return the error of a theta that march does not offer."""
     pace = Resolution(steps=steps, theta=theta, enough=1e-9, most=LONGEST_MARCH)
     with np.errstate(all="ignore"):  # beyond its limit it grows without bound
         return abs(MarchRun(known.scene, known.law, "moreau").run(pace).mean.real - known.mean)

@@ -1,4 +1,4 @@
-"""How long a step may be: largest step times rate at which a perturbation does not grow, predicted and measured.
+"""Largest steps: largest step times rate at which a perturbation does not grow, predicted and measured.
 
 Measured by root finding on the factor that one step, taken by the solver's own code, multiplies a perturbation with.
 """
@@ -42,7 +42,7 @@ def predicted_limit(stepper: str, theta: float = 0.5) -> float:
 
 
 def measured_limit(growth: Callable[[float], float]) -> float:
-    """The least step times rate from which on growth(step times rate) exceeds 1; infinite where it never does."""
+    """Least step times rate from which on growth(step times rate) exceeds 1; infinite where it never does."""
     trials = np.geomspace(0.1, LONGEST_STEP, MANY_STEPS)
     above = next((i for i, z in enumerate(trials) if growth(float(z)) > 1.0 + 1e-9), None)
     if not above:
@@ -56,7 +56,7 @@ def measured_limit(growth: Callable[[float], float]) -> float:
 
 @cache
 def stepper_limit(stepper: StepperName, theta: float, memory: str) -> float:
-    """The measured limit of a stepper of march, on bristles or on slip in the plane."""
+    """Return the measured limit of a stepper of march, on bristles or on slip in the plane."""
     if stepper == "smoothed":
         return measured_limit(_growth_of_dop853)
     grows = _growth_of_bristles if memory == "bristle" else _growth_across
@@ -64,7 +64,7 @@ def stepper_limit(stepper: StepperName, theta: float, memory: str) -> float:
 
 
 def _growth_of_bristles(stepper: StepperName, theta: float, z: float) -> float:
-    """Of a deflection, under a slip that nothing changes: the difference of two steps."""
+    """Growth of a deflection, under a slip that nothing changes: the difference of two steps."""
     drive, law = Drive(amplitude=WEAK, frequency=2.0 * math.pi / z), Dahl(mu=0.4, stiffness=0.4 / QUICK)
     scene = Scene(damping_ratio=0.0, normal_load=WEAK, belt_speed=QUICK, drive=drive)
     starts = (MarchState(0j, 0j, np.array([bent])) for bent in (0j, 1.0 + 0j))
@@ -73,7 +73,7 @@ def _growth_of_bristles(stepper: StepperName, theta: float, z: float) -> float:
 
 
 def _growth_across(stepper: StepperName, theta: float, z: float) -> float:
-    """Of a small velocity across the belt, while the spring balances friction along it."""
+    """Growth of a small velocity across the belt, while the spring balances friction along it."""
     small, drive = 1e-6, Drive(amplitude=0.0, frequency=2.0 * math.pi * QUICK / z)
     across = Transverse(natural_frequency=1e-3, damping_ratio=0.0, load=Load(amplitude=WEAK))
     load = QUICK / 0.4
@@ -94,12 +94,12 @@ def _decay(problem: None, stage: int, tau: float, x: float, v: float) -> tuple[f
 
 
 def _growth_of_dop853(z: float) -> float:
-    """Of a velocity that decays at the rate 1."""
+    """Growth of a velocity that decays at the rate 1."""
     step = interpreted(dop853.stepper(_decay, dop853.unprepared))
     return abs(float(step(None, 0.0, dop853.State(0.0, 1.0, -1.0, 0.0), z).v))
 
 
 @cache
 def peer_limit(name: str, memory: str = "") -> float:
-    """The measured limit of a peer's steps, whatever the law: LSODA changes its formula, heyoka its order."""
+    """Return the measured limit of a peer's steps, whatever the law: LSODA changes its formula, heyoka its order."""
     return math.inf if name in ("LSODA", "heyoka") else measured_limit(partial(growth_by_scipy, name))

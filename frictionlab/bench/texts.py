@@ -44,7 +44,7 @@ def remark(row: Mapping[str, Any]) -> str:
 
 
 def who(row: Mapping[str, Any]) -> str:
-    """The label of a method, or of a peer, which is said."""
+    """Return the label of a method, or of a peer, which is said."""
     return str(row["solver"]) + (" (peer)" if row["side"] == "peer" else "")
 
 
@@ -66,11 +66,11 @@ CURVE_CELLS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     "first run, s": lambda row: cell_text(row["first_run_s"]),
     "remark": remark,
 }
-"""The columns of a curve's table to read, from a row of its file."""
+"""Columns of a curve's table to read, from a row of its file."""
 
 
 def curve_cells(table: pd.DataFrame) -> pd.DataFrame:
-    """The file of a curve as text to read."""
+    """Return the file of a curve as text to read."""
     rows = table.to_dict("records")
     return pd.DataFrame({head: [made(row) for row in rows] for head, made in CURVE_CELLS.items()})
 
@@ -81,7 +81,7 @@ def any_cells(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def without_empty(table: pd.DataFrame) -> pd.DataFrame:
-    """The columns of texts that are not empty in every row."""
+    """Return the columns of texts that are not empty in every row."""
     return table.loc[:, (table != "").any()]
 
 
@@ -92,20 +92,20 @@ def markdown_lines(table: pd.DataFrame) -> list[str]:
 
 
 def least_times(table: pd.DataFrame, target: float) -> pd.Series:
-    """The least time per point [us] of each solver, at settings that answer every point to this largest error."""
+    """Least time per point [us] of each solver, at settings that answer every point to this largest error."""
     numbers = table[["ok", "points", "largest_error", "mean_us"]].apply(pd.to_numeric)
     good = (numbers["ok"] == numbers["points"]) & (numbers["largest_error"] <= target)
     return numbers.loc[good, "mean_us"].groupby(table["solver"][good]).min().dropna()
 
 
 def fastest(table: pd.DataFrame, side: str, target: float) -> str:
-    """The least time per point to this largest error, and whose it is; a dash where nothing comes so near."""
+    """Return the least time per point to this largest error, and whose it is; a dash where nothing comes so near."""
     near = least_times(table[table["side"] == side], target)
     return f"{micro_text(near.min())} by {near.idxmin()}" if len(near) else "-"
 
 
 def curve_summary(name: str, table: pd.DataFrame) -> str:
-    """The time per point to reach an error, for every contender, with the ratio to the best method."""
+    """Return the time per point to reach an error, for every contender, with the ratio to the best method."""
     title = f"{name}: us per point to a largest error of (times the best method's)"
     if table.empty:
         return title

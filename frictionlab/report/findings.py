@@ -41,7 +41,7 @@ MOST_OF_A_POINT = 12
 """Digits of a number that is told with its error."""
 MOST_EXAMPLES = 3
 SAYS_TESTED = "tested: "
-"""How a sentence on starts begins, in ``reason``."""
+"""Beginning of a sentence on starts, in ``reason``."""
 
 VERDICTS = {
     True: Markup('<span class="good">passed</span>'),

@@ -16,7 +16,7 @@ from frictionlab.values.columns import belt_speed
 
 MOST_CURVES = 20
 WIDTH, HEIGHT = 120.0, 28.0
-"""Of a drawing [pixels]."""
+"""Size of a drawing [pixels]."""
 
 
 def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:

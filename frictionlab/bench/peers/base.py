@@ -1,4 +1,4 @@
-"""The base class of peers: computation of mean friction by another library, without an error bound."""
+"""Base class of peers: computation of mean friction by another library, without an error bound."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LONGEST_TRANSIENT = 5000
 def closed_mean(
     one_period: Callable[[Floats], Floats], state: Floats, places: slice, period: float, enough: float
 ) -> Floats:
-    """The mean friction of a motion, or of one a column, period by period until it closes.
+    """Return the mean friction of a motion, or of one a column, period by period until it closes.
 
     state: its last number is the integral of the friction coefficient, from zero in each period; places: those of
     positions and velocities. enough: a gap that counts as closed: the change of velocity that a mean friction of the
@@ -49,10 +49,10 @@ class Peer(Record, ABC):
     package: ClassVar[str]
     remedy: ClassVar[str] = "pip install frictionlab[peers]"
     together: ClassVar[bool] = False
-    """Whether it solves many scenes at once for less than one after another."""
+    """True if it solves many scenes at once for less than one after another."""
 
     def missing(self) -> str | None:
-        """How to install it where it is not; None where it is."""
+        """Return how to install it where it is not; None where it is."""
         return None if find_spec(self.package) else f"not installed: {self.remedy}"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
@@ -71,7 +71,7 @@ class Peer(Record, ABC):
 
     @abstractmethod
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:
-        """The mean friction of scenes that differ in belt speed alone.
+        """Return the mean friction of scenes that differ in belt speed alone.
 
         Raises ArithmeticError, with a reason, where the integrator gives up.
         """

@@ -52,7 +52,7 @@ class Equations(ABC):
         self.scales = np.ones(5)
 
     def __call__(self, t: float, y: Floats) -> list[float]:
-        """The rates."""
+        """Return the rates."""
         self.calls += 1
         if self.calls > self.most_calls:
             raise ArithmeticError(f"gave up after {self.most_calls} calls of the equations of motion")
@@ -60,7 +60,7 @@ class Equations(ABC):
 
     @abstractmethod
     def rates(self, turn: complex, y: list[float]) -> list[float]:
-        """The same where the drive has turned so far."""
+        """Return the same where the drive has turned so far."""
 
 
 class Sliding(Equations):
@@ -84,7 +84,7 @@ class Sliding(Equations):
 
 
 class Creeping(Sliding):
-    """The same along the belt, with friction smoothed by tanh over a width."""
+    """Same along the belt, with friction smoothed by tanh over a width."""
 
     width: float
 
@@ -104,7 +104,7 @@ class _Plain:
 
 
 class OnBristles(Equations):
-    """The formulas of a bristle law, on the line of x, v, z and that integral, in the plane of x1, v1, x2, v2, z1, z2
+    """Formulas of a bristle law, on the line of x, v, z and that integral, in the plane of x1, v1, x2, v2, z1, z2
     and that integral.
 
     An absolute tolerance of a deflection is told in deflections of steady slip where these are small.
@@ -139,7 +139,7 @@ class OnBristles(Equations):
 
 
 MOST_CALLS, MOST_BRISTLE_CALLS = 500_000, 5_000_000
-"""Of the equations of motion per scene: where friction jumps, step control can grind for ever."""
+"""Most calls of the equations of motion per scene: where friction jumps, step control can grind for ever."""
 MOST_ODEINT_STEPS = 1_000_000
 """Per period: odeint's own default of 500 is too few for stiff bristles."""
 LEAST_RTOL = 3e-14
@@ -194,7 +194,7 @@ def _settled(motion: Equations, solver: str, tolerance: float) -> Floats:
 
 
 def one_period(equations: Equations, state: Floats, solver: str, tolerance: float) -> Floats:
-    """The state at the end, by ``odeint`` or a solver of solve_ivp. Raises ArithmeticError where it gives up."""
+    """State at the end, by ``odeint`` or a solver of solve_ivp. Raises ArithmeticError where it gives up."""
     settings: dict[str, Any] = {"rtol": max(tolerance, LEAST_RTOL), "atol": tolerance * equations.scales}
     if solver != "odeint":
         return by_solve_ivp(equations, state, solver, settings).y[:, -1]
@@ -209,7 +209,7 @@ def one_period(equations: Equations, state: Floats, solver: str, tolerance: floa
 
 
 def by_solve_ivp(equations: Equations, state: Floats, solver: str, settings: dict[str, Any]) -> Any:
-    """What solve_ivp finds over a period. Raises ArithmeticError where it gives up."""
+    """Return what solve_ivp finds over a period. Raises ArithmeticError where it gives up."""
     from scipy.integrate import solve_ivp
 
     found = solve_ivp(equations, (0.0, equations.period), state, method=solver, **settings)

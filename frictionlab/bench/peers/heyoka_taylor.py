@@ -90,7 +90,7 @@ def _slip(mass: Mass, limit: float, tolerance: float) -> Any:
     wave = mass.force, mass.frequency, mass.damping
 
     def turned(integrator: Any, _direction: int) -> bool:
-        """The end of slip: slip the other way, or stop where friction can hold the mass."""
+        """Return the end of slip: slip the other way, or stop where friction can hold the mass."""
         force, frequency, damping = wave
         position, speed = integrator.state[0], integrator.pars[0]
         net = (force * cmath.exp(1j * frequency * integrator.time)).imag - damping * speed - position
@@ -143,7 +143,7 @@ def _plane(mass: Mass, friction: float, speeds: Floats, tolerance: float, lanes:
 
 @lru_cache(maxsize=16)
 def _batch(mass: Mass, friction: float, tolerance: float, lanes: int) -> Any:
-    """The belt speed is a parameter of each lane."""
+    """Return the belt speed is a parameter of each lane."""
     import heyoka as hy
 
     loads = _wave(mass.force, mass.frequency), _wave(mass.transverse_force, mass.frequency)

@@ -25,13 +25,13 @@ from frictionlab.values.quantities import Floats
 
 SOLVE_IVP_METHODS = "RK23", "RK45", "DOP853", "Radau", "LSODA"
 MOST_CALLS_OF_A_PERIOD = 200_000
-"""Of the equations of motion."""
+"""Most calls of the equations of motion."""
 HUGE = 1e300
 """A tolerance at which every step passes."""
 
 
 def equations_of(scene: Scene, law: FrictionLaw, width: float | None) -> Equations:
-    """The equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
+    """Equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
     if law.memory_kind == "bristle":
         return OnBristles(scene, law, MOST_CALLS_OF_A_PERIOD)
     if width is None:
@@ -53,7 +53,7 @@ def by_scipy(solver: str, equations: Equations, state: Floats, tolerance: float)
 
 
 def growth_by_scipy(solver: str, z: float) -> float:
-    """What one step of this length, forced on the solver, multiplies y of y' = -y with."""
+    """Return what one step of this length, forced on the solver, multiplies y of y' = -y with."""
     from scipy import integrate
 
     settings: dict[str, Any] = {"first_step": z, "max_step": z, "rtol": 1e-3, "atol": HUGE}
@@ -65,7 +65,7 @@ def growth_by_scipy(solver: str, z: float) -> float:
 def by_heyoka(
     scene: Scene, law: FrictionLaw, state: Floats, width: float | None, tolerance: float
 ) -> tuple[float, float]:
-    """The same of smoothed friction along the belt, or of slip in the plane."""
+    """Return the same of smoothed friction along the belt, or of slip in the plane."""
     mass, friction = scene.mass(), law.sliding_friction(1.0)
     period = 2.0 * math.pi / mass.frequency
     integrator = _creep(tolerance) if width is not None else _plane(tolerance)
@@ -95,7 +95,7 @@ def _creep(tolerance: float) -> Any:
 
 @lru_cache(maxsize=128)
 def _plane(tolerance: float) -> Any:
-    """The same of slip in the plane."""
+    """Return the same of slip in the plane."""
     import heyoka as hy
 
     force, damping, load, mu, belt, force_2, damping_2, stiffness_2 = (hy.par[i] for i in range(8))

@@ -68,15 +68,15 @@ class LineMotion(ABC):
         raise ArithmeticError(f"more than {MOST_EVENTS} legs in one period")
 
     def load(self, t: float) -> float:
-        """The load."""
+        """Return the load."""
         return (self.mass.force * cmath.exp(1j * self.mass.frequency * t)).imag
 
     def net(self, place: MotionState) -> float:
-        """The force that friction must balance in stick."""
+        """Return the force that friction must balance in stick."""
         return self.load(place.t) - self.mass.damping * self.belt_speed - place.x
 
     def held_impulse(self, start: MotionState, end: MotionState) -> float:
-        """The integral of ``net`` over a leg of stick."""
+        """Return the integral of ``net`` over a leg of stick."""
         turn = self.mass.force / (1j * self.mass.frequency)
         drive = (turn * cmath.exp(1j * self.mass.frequency * end.t)).imag
         drive -= (turn * cmath.exp(1j * self.mass.frequency * start.t)).imag
@@ -84,7 +84,7 @@ class LineMotion(ABC):
         return drive - constant * (end.t - start.t)
 
     def side(self, place: MotionState) -> float:
-        """The sign of the slip, from zero slip that of the force too large to hold; 0 in stick."""
+        """Return the sign of the slip, from zero slip that of the force too large to hold; 0 in stick."""
         slip = place.v - self.belt_speed
         if slip != 0.0:
             return math.copysign(1.0, slip)
@@ -93,7 +93,7 @@ class LineMotion(ABC):
 
 
 def means(line: LineMotion, scenes: Sequence[Scene], tolerance: float) -> Floats:
-    """The mean friction of each scene, from the friction-free orbit until the period closes."""
+    """Return the mean friction of each scene, from the friction-free orbit until the period closes."""
     found, state = [], np.array([*start(line.mass)[:2], 0.0])
     enough = tolerance * line.mass.normal_load * line.period
     for scene in scenes:

@@ -8,6 +8,8 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
+from frictionlab.report.sources import itself
+
 PROJECT = Path(__file__).parent.parent
 PACKAGE: dict[str, Any] = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
 
@@ -35,6 +37,7 @@ def test_the_citation_is_that_of_the_package() -> None:
         cited["title"]
         == f"{PACKAGE['name']}: {PACKAGE['description'][:1].lower()}{PACKAGE['description'][1:-1]}"
     )
+    assert f"title = {{{cited['title']}}}" in itself(PACKAGE["version"]).bibtex
     assert [cited["version"], cited["license"]] == [PACKAGE["version"], PACKAGE["license"]]
     assert [author["name"] for author in cited["authors"]] == [
         author["name"] for author in PACKAGE["authors"]

@@ -7,7 +7,7 @@ import inspect
 import re
 from collections.abc import Iterable, Sequence
 from functools import cache
-from importlib.metadata import entry_points
+from importlib.metadata import entry_points, metadata
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -35,9 +35,10 @@ def bibtex(runs: Sequence[Results]) -> str:
 
 def itself(version: str) -> Publication:
     """Return the entry of frictionlab. version: that which made the numbers."""
+    summary = metadata("frictionlab")["Summary"]
     fields = {
         "author": "{The frictionlab authors}",
-        "title": "frictionlab: average-friction curves of vibrated sliding bodies",
+        "title": f"frictionlab: {summary[:1].lower()}{summary[1:].removesuffix('.')}",
         "note": f"Python package, version {version}",
     }
     lines = "".join(f"  {name} = {{{value}}},\n" for name, value in fields.items())

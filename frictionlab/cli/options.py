@@ -55,7 +55,7 @@ as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of 
 def folder(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Return the option ``-o``, the folder that a command writes to."""
     help_text = f"Where to; {default} if left out."
-    return click.option("-o", "out", type=PATH, metavar="DIR", help=help_text)
+    return click.option("-o", "--out", "out", type=PATH, metavar="DIR", help=help_text)
 
 
 def check_laws(names: Iterable[str], known: Laws) -> None:

@@ -99,7 +99,7 @@ def test_a_run_prints_curves_reasons_verdicts_and_where_the_table_is(frictionlab
 
 
 def test_a_run_writes_its_report_last_with_its_figures_inside(frictionlab: Any, drawn: None) -> None:
-    said = frictionlab("run", study(columns=["mean_friction"]), "-o", "out")
+    said = frictionlab("run", study(columns=["mean_friction"]), "--out", "out")
 
     assert said.err.splitlines()[-1] == "report in out/report.html"
     assert "figures in out/figures" in said.err

@@ -6,6 +6,7 @@ What figures of every kind share: widths, text sizes, and the file in which a fi
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Sequence
 from io import BytesIO
@@ -35,6 +36,8 @@ _SAVED: dict[str, Any] = {
     "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 2}},
     "pdf": {"metadata": {"CreationDate": None}},
 }
+_LONE_ACCENT = re.compile(">([\u0300-\u036f])<")
+"""Bar or hat, a text of its own: before it goes a letter of no width, or viewers draw a dotted circle below it."""
 NOTEBOOK_DPI = 200
 
 
@@ -64,6 +67,8 @@ def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "p
         figure.set_layout_engine(None)
         for file in files:
             figure.savefig(file, **_SAVED[file.suffix[1:]])
+            if file.suffix == ".svg":
+                file.write_text(_LONE_ACCENT.sub(">\u200b\\1<", file.read_text("utf-8")), "utf-8")
     return files
 
 

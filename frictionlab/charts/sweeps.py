@@ -24,8 +24,9 @@ from frictionlab.values.columns import (
 T = TypeVar("T")
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 LONGEST_LABEL, BESIDE = 36, 22  # letters of a name alone, and beside another name or a count
-EVEN = 0.3
-"""Unevenness below which logarithms count as even: of 1, 2, 5, 10 it is 0.14, of chosen belt speeds 0.4 and more."""
+EVEN, EVENER = 0.3, 3.0
+"""Unevenness below which logarithms count as even: of 1, 2, 5, 10 it is 0.14, of chosen belt speeds 0.4 and more.
+Values over many decades that crowd somewhere count, too, if they are so much more uneven than their logarithms."""
 
 
 class SweptValue(NamedTuple):
@@ -145,7 +146,8 @@ def is_logarithmic(values: NDArray[np.float64]) -> bool:
     steps = np.unique(values[np.isfinite(values)])
     if len(steps) < 3 or steps[0] <= 0 or steps[-1] < 5 * steps[0]:
         return False
-    return _unevenness(np.log(steps)) < min(_unevenness(steps), EVEN)
+    uneven = _unevenness(steps)
+    return _unevenness(np.log(steps)) < max(min(EVEN, uneven), uneven / EVENER)
 
 
 def _unevenness(steps: NDArray[np.float64]) -> float:

@@ -325,7 +325,7 @@ class Study(StudyGrid):
         return told
 
     def selected(self) -> frozenset[str]:
-        """Result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
+        """Result columns of its table: asked for, of every table, judged by ``expect`` or of ``figures.finding``."""
         judged = [
             each.column for each in self.expect if each.column and each.column not in columns.CURVE_MEASURES
         ]
@@ -333,7 +333,8 @@ class Study(StudyGrid):
             each.shape or each.column in columns.CURVE_MEASURES for each in self.expect
         )
         of_shape = columns.OF_SHAPE if of_curves else ()
-        return columns.selected(self.columns, [*judged, *of_shape])
+        of_figure = columns.columns_of(self.figures.finding or "")
+        return columns.selected(self.columns, [*judged, *of_shape, *of_figure])
 
     def asks_for(self, group: str) -> bool:
         """Check whether a group of columns is asked for by its name."""

@@ -148,7 +148,7 @@ LITERATURE = (
     ("sigma1", "damping"),
     ("sigma2 fv bv", "viscosity"),
     ("mus mustat mubreak fs ts", "mu_static"),
-    ("muk mud mudyn muc fc fk tc", "mu_kinetic"),
+    ("mu muk mud mudyn muc fc fk tc", "mu_kinetic"),
     ("muk mud mudyn muc fc fk tc", "mu"),
     ("vs vstribeck vst stribeckvelocity", "stribeck_speed"),
     ("deltas deltast", "stribeck_exponent"),

@@ -380,7 +380,13 @@ def test_an_energy_that_is_zero_but_for_rounding_is_drawn_as_zero(line: pd.DataF
     assert axes.get_ylim()[0] == 0.0
 
 
-@pytest.mark.parametrize("values", [np.logspace(-2, 1, 7), [0.1, 1, 10], [1, 2, 5, 10, 20, 50]])
+ACROSS_DECADES = [1.5, 3, 5, 8, 10, 12, 15, 17, 20, 30, 50, 150, 500, 5000]
+"""Contact stiffnesses that crowd about a resonance."""
+
+
+@pytest.mark.parametrize(
+    "values", [np.logspace(-2, 1, 7), [0.1, 1, 10], [1, 2, 5, 10, 20, 50], ACROSS_DECADES]
+)
 def test_logarithmic_spacing_is_recognised(values: list[float]) -> None:
     assert is_logarithmic(np.asarray(values))
 

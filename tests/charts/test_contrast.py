@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -9,7 +10,6 @@ import matplotlib as mpl
 import pytest
 from drawn_figures import drawn
 from oracle import table_in_the_plane
-from profiles import deep
 
 from frictionlab.bench.charts import OURS, THEIRS
 from frictionlab.charts.bifurcation import LONGER, PERIOD_MARKERS, WILD
@@ -53,11 +53,12 @@ def test_values_of_a_sweep_get_paler_and_stay_visible() -> None:
     assert len({line.get_marker() for line in lines}) == len(lines)
 
 
-@deep("seconds of figures")
 def test_text_stays_text_in_drawings(tmp_path: Path) -> None:
     with mpl.rc_context(STYLE):
         svg, pdf = write_figure(drawn(table_in_the_plane()), tmp_path / "plane", ("svg", "pdf"))
 
-    assert "belt speed" in svg.read_text()
+    assert "belt speed" in svg.read_text("utf-8")
+    assert re.findall("\u200b[\u0300-\u036f]", svg.read_text("utf-8"))
+    assert not re.search(">[\u0300-\u036f]", svg.read_text("utf-8"))
     assert b"/FontFile2" in pdf.read_bytes()
     assert b"/Type3" not in pdf.read_bytes()

@@ -109,6 +109,13 @@ def test_a_shape_is_expected_by_area_unless_it_says_else_and_loads_back() -> Non
     assert parse_study(found.resolved()) == found
 
 
+def test_a_table_has_the_columns_of_the_figure_that_the_title_is_of() -> None:
+    energies = {"energy_input", "energy_viscous", "energy_friction", "energy_contact"}
+
+    assert energies <= parse_study(good() | {"figures": {"finding": "energies"}}).selected()
+    assert not energies & parse_study(good() | {"expect": []}).selected()
+
+
 def test_expectations_of_several_rows_and_against_others_load_back() -> None:
     sweep = {"sweep": {"scene.belt_speed": [1, 2, 3]}}
     where = {"law": ["coulomb"], "scene.belt_speed": {"from": 1, "to": 2}}

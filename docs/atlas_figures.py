@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from frictionlab.charts.maps import cell_edges
+from frictionlab.charts.sheet import write_figure
 
 FIGURES = Path(__file__).parent / "figures"
 LAWS = {
@@ -111,7 +112,7 @@ def main(runs: Path) -> None:
         Line2D([], [], color="#7f0f26", linewidth=1.6, label="area over the chord zero, solved for")
     )
     figure.legend(handles=entries, loc="outside upper left", ncols=len(entries))
-    figure.savefig(FIGURES / "atlas.svg")
+    write_figure(figure, FIGURES / "atlas", ("svg",))
 
 
 if __name__ == "__main__":

@@ -107,15 +107,19 @@ def said_of(name: str) -> dict[str, str]:
     return said.groupdict()
 
 
-def make(exhibit: Exhibit) -> None:
-    """Run the study; write its page and its figure."""
+def drawn(exhibit: Exhibit) -> str:
+    """Run the study; its most telling figure, as SVG."""
     with tempfile.TemporaryDirectory() as folder:
         finding = load_study(study_named(exhibit.name)).figures.finding
         command = [COMMAND, "run", exhibit.study, "-o", f"{folder}/run"]
         subprocess.run(command, cwd=STUDIES.parent, stdout=subprocess.DEVNULL, check=True)
-        drawn = [name for name in FIGURE_NAMES if Path(folder, "run", "figures", f"{name}.svg").exists()]
-        figure = Path(folder, "run", "figures", f"{finding or drawn[0]}.svg").read_text()
-    (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(figure)
+        there = [name for name in FIGURE_NAMES if Path(folder, "run", "figures", f"{name}.svg").exists()]
+        return Path(folder, "run", "figures", f"{finding or there[0]}.svg").read_text("utf-8")
+
+
+def make(exhibit: Exhibit) -> None:
+    """Write its page and its figure."""
+    (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(drawn(exhibit), "utf-8")
     (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page())
 
 

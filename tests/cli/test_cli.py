@@ -731,7 +731,7 @@ def test_a_command_imports_what_it_needs_and_no_more(
     ("arguments", "said"),
     [
         (["run", ""], "Invalid value for 'STUDY': the path is empty"),
-        (["run", "study.yaml", "-o", ""], "Invalid value for '-o': the path is empty"),
+        (["run", "study.yaml", "-o", ""], "Invalid value for '-o' / '--out': the path is empty"),
         (["run", f"{'x' * 300}.yaml"], ".yaml: File name too long"),
         (["plot", "x" * 300], "xxx: File name too long"),
         (["run", "study.yaml", "-o", "out", "--cache", "study.yaml"], "--cache: study.yaml is a file"),

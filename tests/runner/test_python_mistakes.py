@@ -35,7 +35,7 @@ WHOLE = "must be a whole number of at least 1, got"
 SAID = {
     "fl.Coulomb(0.4)": "Coulomb takes its values by name: write Coulomb(mu=0.4)",
     "fl.Stribeck(mu=0.4, mu_kinetic=0.6, mu_static=1)": "Stribeck: mu: unknown key; allowed: mu_kinetic, "
-    "mu_static, stribeck_speed, stribeck_exponent, viscosity, curve",
+    "mu_static, stribeck_speed, stribeck_exponent, viscosity, curve\n    did you mean 'mu_kinetic'?",
     "fl.Stribeck(mu=-0.4, mu_static=1)": "Stribeck: mu: must be >= 0, got -0.4",
     "SI.with_(damping_ratio=0.1)": "Scene: damping_ratio: takes the place of damping: write "
     "with_(damping=None, damping_ratio=0.1)",

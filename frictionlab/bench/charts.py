@@ -172,7 +172,7 @@ NEAREST_LABELS = 1.3
 
 
 def orders_figure(table: pd.DataFrame) -> Figure:
-    """One panel a motion, one line a solver: its errors at each refinement, hollow where they are not asymptotic."""
+    """Draw a panel for each motion, a line for each solver: its errors, hollow where they are not asymptotic."""
     solvers, motions = list(table["solver"].unique()), table.groupby("title", sort=False)
     high = math.ceil(len(motions) / 3)
     figure = blank_figure(PAGE, 1.95 * high + 0.6)
@@ -321,7 +321,7 @@ _LINE: Look = {"linewidth": 1.1, "path_effects": _OUTLINED, "zorder": 3}
 
 
 class FailurePicture(NamedTuple):
-    """One map: its grid, a row for each ordinate, which ascend, and its named points.
+    """Map to be drawn: its grid, a row for each ordinate, which ascend, and its named points.
 
     across: what the ordinates are. free: V_lin at each. edges: ordinates by what changes there; borders: where on the
     grid something is so, NaN where that is not known.

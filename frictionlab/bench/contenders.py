@@ -32,15 +32,15 @@ FILLED: Any = Field(min_length=1)
 _RecordT = TypeVar("_RecordT", bound=Record)
 
 
-def names_of(known: Mapping[str, Any]) -> Any:
-    """Type of a list of names, each read as what it stands for."""
+def one_of(known: Mapping[str, Any]) -> Any:
+    """Return the validator that reads a name as what it stands for."""
 
     def named(name: Any) -> Any:
         if not isinstance(name, str) or name not in known:
             raise ValueError(f"must be one of {', '.join(map(repr, known))}")
         return known[name]
 
-    return Annotated[tuple[Annotated[Any, BeforeValidator(named)], ...], FILLED]
+    return BeforeValidator(named)
 
 
 class BenchSetting(NamedTuple):
@@ -196,7 +196,7 @@ AReference = Annotated[Any, BeforeValidator(_reference)]
 
 
 class Measured(Record):
-    """Who is measured and against whom, of a list or of one of its blocks."""
+    """Methods and peers that are measured, and their references, of a list or of one of its blocks."""
 
     references: tuple[AReference, ...] = ()
     methods: Annotated[tuple[AMethod, ...], FILLED] = ()

@@ -112,10 +112,8 @@ class BenchCurve:
         if rows:
             table, notes = table.astype({"covered": "Int64"}), notes + _reference_lines(known, table)
         title = f"{self.name}: {self.title}".removesuffix(": ")
-        figure, said = (
-            partial(curve_figure, title, table, largest_error(known)),
-            curve_summary(self.name, table),
-        )
+        figure = partial(curve_figure, title, table, largest_error(known))
+        said = curve_summary(self.name, table)
         drawn = SectionResult(self.name, self.title, table, said, figure, CURVE_CAPTION)
         return replace(drawn, kind="curve", notes=notes, left_out=missing)
 
@@ -131,7 +129,7 @@ def largest_error(known: KnownReferences) -> float:
 
 
 def _reference_lines(known: KnownReferences, table: pd.DataFrame) -> list[str]:
-    """Who is measured against what, how well that is known, and how far the references are apart."""
+    """Tell who is measured against what, how well that is known, and how far the references are apart."""
     lines = []
     for reference, found in known:
         if users := table["solver"][table["reference"] == reference.label].unique().tolist():

@@ -107,7 +107,7 @@ class FailureMap(OwnBlock):
 
     @cached_property
     def rows(self) -> list[MapRow]:
-        """Those of the grid, and one of a single scene for each named point."""
+        """Return the rows of the grid, and one of a single scene for each named point."""
         named = (self.row(each.value, [each.belt_speed], each.name) for each in self.named_points)
         return [*self.grid_rows, *named]
 

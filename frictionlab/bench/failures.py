@@ -33,12 +33,12 @@ class FailureSection:
 
     @property
     def name(self) -> str:
-        """That of its files."""
+        """Return the name of its files."""
         return f"failures_{file_stem(self.label)}"
 
     def measure(self, tell: Tell) -> SectionResult:
         """Solve every point of every map. What the references say is found once for all sections."""
-        first, style = self.maps[0][1], {"hatch.linewidth": 0.5, "svg.fonttype": "none"}  # letters stay text
+        first, style = self.maps[0][1], {"hatch.linewidth": 0.5}
         title = f"Failure maps of {self.label}{' (peer)' if first.side == 'peer' else ''}"
         if missing := first.missing():
             return nothing_measured(self.name, title, missing)

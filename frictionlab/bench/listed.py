@@ -27,9 +27,9 @@ ALL_OF_IT = BeforeValidator(lambda given: {} if given is True else given)
 """Reads ``true`` as all that a section has."""
 
 
-def _blocks(kind: type[Any]) -> Any:
-    """Return the type of a list of blocks; a mistake in one is told by its path in the block."""
-    return Annotated[tuple[Annotated[Any, BeforeValidator(lambda given: built(kind, given))], ...], FILLED]
+def _block(kind: type[Any]) -> BeforeValidator:
+    """Return the validator that reads a block; a mistake in it is told by its path in the block."""
+    return BeforeValidator(lambda given: built(kind, given))
 
 
 class ListKeys(Measured):
@@ -37,13 +37,13 @@ class ListKeys(Measured):
 
     schema_version: Literal[1] = Field(alias="schema")
     title: str = ""
-    scenes: _blocks(CurveBlock) = ()  # type: ignore[valid-type]
+    scenes: Annotated[tuple[Annotated[Any, _block(CurveBlock)], ...], FILLED] = ()
     repeats: AtLeastOne = 30
     seconds: Positive = 2.0
     orders: Annotated[OrdersSection | None, ALL_OF_IT] = None
     stability: Annotated[StabilityMaps | None, ALL_OF_IT] = None
-    failures: _blocks(FailureMap) = ()  # type: ignore[valid-type]
-    models: _blocks(ModelsBlock) = ()  # type: ignore[valid-type]
+    failures: Annotated[tuple[Annotated[Any, _block(FailureMap)], ...], FILLED] = ()
+    models: Annotated[tuple[Annotated[Any, _block(ModelsBlock)], ...], FILLED] = ()
 
     def curves(self, notes: Notes) -> Iterator[BenchCurve]:
         """A curve for each law of each scene; what a scene does not say holds for all."""

@@ -75,7 +75,7 @@ class ModelsSection:
 
     @property
     def name(self) -> str:
-        """That of its files."""
+        """Return the name of its files."""
         return f"models_{file_stem(self.block.name)}"
 
     def measure(self, tell: Tell) -> SectionResult:

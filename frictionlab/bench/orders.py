@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from frictionlab.bench.charts import orders_figure
-from frictionlab.bench.contenders import AtLeastOne, names_of
+from frictionlab.bench.contenders import FILLED, AtLeastOne, one_of
 from frictionlab.bench.order_solvers import MOTIONS, ORDER_SOLVERS, KindOfMotion, OrderSolver
 from frictionlab.bench.result import SectionResult, Tell
 from frictionlab.bench.solve import solve_points
@@ -141,7 +141,7 @@ _FOR_THE_FIGURE = ["title", "errors"]
 def order_row(
     motion: KindOfMotion, solver: OrderSolver, samples: int, mean: float, known: float
 ) -> dict[str, Any]:
-    """One solver on one motion: the order of its errors about a mean known to an error."""
+    """Return the row of one solver on one motion: the order of its errors about a mean known to an error."""
     found, (theory, reason) = solver.refined(motion, mean, samples), theory_of(solver.name, motion.name)
     sizes = 1.0 / found.values if found.setting == "steps" else found.values
     fit = fit_order(sizes, found.errors, known)
@@ -165,8 +165,10 @@ class OrdersSection(Record):
 
     name: ClassVar[str] = "orders"
 
-    motions: names_of(MOTIONS) = (*MOTIONS.values(),)  # type: ignore[valid-type]
-    steppers: names_of(ORDER_SOLVERS) = (*ORDER_SOLVERS.values(),)  # type: ignore[valid-type]
+    motions: Annotated[tuple[Annotated[Any, one_of(MOTIONS)], ...], FILLED] = (*MOTIONS.values(),)
+    steppers: Annotated[tuple[Annotated[Any, one_of(ORDER_SOLVERS)], ...], FILLED] = (
+        *ORDER_SOLVERS.values(),
+    )
     samples: AtLeastOne = 40
 
     def measure(self, tell: Tell) -> SectionResult:

@@ -35,7 +35,7 @@ class SectionResult:
 
 
 class Section(Protocol):
-    """One part of a bench list, measured as a whole: what is finished when the user interrupts is kept."""
+    """Part of a bench list, measured as a whole: what is finished when the user interrupts is kept."""
 
     @property
     def name(self) -> str:

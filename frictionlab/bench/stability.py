@@ -12,7 +12,7 @@ import pandas as pd
 from pydantic import Field
 
 from frictionlab.bench.charts import stability_figure
-from frictionlab.bench.contenders import names_of
+from frictionlab.bench.contenders import FILLED, one_of
 from frictionlab.bench.result import SectionResult, Tell, nothing_measured
 from frictionlab.bench.stability_problems import PROBLEMS, StabilityProblem
 from frictionlab.bench.stability_solvers import MAPPED_PEERS, MAPPED_STEPPERS, REGIONS, MappedSolver
@@ -38,7 +38,7 @@ class StabilitySection:
 
     @property
     def name(self) -> str:
-        """That of its files."""
+        """Return the name of its files."""
         return f"stability_{self.mapped.name}"
 
     def measure(self, tell: Tell) -> SectionResult:
@@ -86,11 +86,11 @@ def line(name: str, table: pd.DataFrame) -> str:
 
 
 class StabilityMaps(Record):
-    """Which steppers and peers, all where neither is named; on which problems; a grid of how many by how many."""
+    """Steppers and peers that are mapped, all where neither is named, on these problems; grid: points an axis."""
 
-    steppers: names_of(MAPPED_STEPPERS) = ()  # type: ignore[valid-type]
-    peers: names_of(MAPPED_PEERS) = ()  # type: ignore[valid-type]
-    problems: names_of(PROBLEMS) = (*PROBLEMS.values(),)  # type: ignore[valid-type]
+    steppers: Annotated[tuple[Annotated[Any, one_of(MAPPED_STEPPERS)], ...], FILLED] = ()
+    peers: Annotated[tuple[Annotated[Any, one_of(MAPPED_PEERS)], ...], FILLED] = ()
+    problems: Annotated[tuple[Annotated[Any, one_of(PROBLEMS)], ...], FILLED] = (*PROBLEMS.values(),)
     grid: Annotated[int, Field(strict=True, ge=2)] = 70
     """Settings, and rates: about 5,000 points a stepper and problem."""
 

@@ -34,7 +34,7 @@ SETTLED_LAPS = 400
 FINE_STEPS = {"bristle": 65_536, "smoothing": 4096, "plane": 4096}
 """Per period, of the run that gives the state; more where slip reverses, which steps meet with order two."""
 LONGEST_MARCH = 200
-"""That a motion is waited for to repeat: where it is right, it does so in twenty, but for rounding."""
+"""Periods that a motion is waited for to repeat: where it is right, it does so in twenty, but for rounding."""
 OFFERED_THETAS = 0.5, 1.0
 MARCHED = "a mass by march until its motion repeats, for 200 periods at most"
 CREPT = "the creep of a mass that would stick, by march until it repeats, at several widths"
@@ -42,7 +42,7 @@ ONE_PERIOD = "one period, from a state of the periodic motion"
 
 
 class MapPoint(NamedTuple):
-    """One setting at one rate: the step taken (a usual one), the true error, and the one stated or allowed.
+    """Point of a map, a setting at a rate: the step taken (a usual one), the true error, that stated or allowed.
 
     held: the step times the frequency of the mass held by its bristles, 0 where that limits nothing.
     """
@@ -58,7 +58,7 @@ class MapPoint(NamedTuple):
 
     @property
     def region(self) -> str:
-        """One of ``REGIONS``: right, and where not, whether anything tells."""
+        """Return one of ``REGIONS``: right, and where not, whether anything tells."""
         if self.status != "ok":
             return "wrong_and_said"
         if not self.error <= self.stated:

@@ -29,7 +29,7 @@ CLOSE_ROOT = 1e-4
 LONGEST_STEP = 1e4
 """Times rate; a perturbation that has not grown by then grows at no step."""
 MANY_STEPS = 400
-"""That are looked at, between the shortest and the longest, for the first at which it grows."""
+"""Steps that are tried, between the shortest and the longest, for the first at which a perturbation grows."""
 WEAK, QUICK = 1e-12, 1e4
 """A friction that moves no mass, and a rate beside which springs are slow."""
 

@@ -53,23 +53,22 @@ def describe_error(problem: BaseException, files: Collection[str], asked: bool =
     """
     if isinstance(problem, SyntaxError) and problem.filename:
         return f"SyntaxError: {problem.msg}{source_line(problem.filename, problem.lineno or 1)}"
-    call = _numbers_asked(problem, files) if asked else ""
+    name, numbers = call_of(problem, files) if asked else ("", {})
+    told = ", ".join(f"{each}={value:g}" for each, value in numbers.items())
+    call = f" in {name}({told})" if told else ""
     return f"{text_of_error(problem)}{call}{innermost_line(problem, files) or ''}"
 
 
-def _numbers_asked(problem: BaseException, files: Collection[str]) -> str:
-    """Return the function of these files that raised an error, with the numbers it was called with."""
+def call_of(problem: BaseException, files: Collection[str]) -> tuple[str, dict[str, complex]]:
+    """Return the function of these files that raised an error, and the numbers it was called with, by name."""
     frames = [
         each for each, _ in traceback.walk_tb(problem.__traceback__) if each.f_code.co_filename in files
     ]
-    code = frames[-1].f_code if frames else None
-    told = (
-        []
-        if code is None
-        else [(name, frames[-1].f_locals.get(name)) for name in code.co_varnames[: code.co_argcount]]
-    )
-    numbers = [f"{name}={value:g}" for name, value in told if isinstance(value, float | complex)]
-    return f" in {code.co_name}({', '.join(numbers)})" if code is not None and numbers else ""
+    if not frames:
+        return "", {}
+    code, held = frames[-1].f_code, frames[-1].f_locals
+    given = {name: held.get(name) for name in code.co_varnames[: code.co_argcount]}
+    return code.co_name, {name: value for name, value in given.items() if isinstance(value, float | complex)}
 
 
 def text_of_error(problem: BaseException) -> str:

@@ -13,7 +13,8 @@ from frictionlab.study.expectations import Expectation, NumberSchema, OrText
 from frictionlab.study.figure_options import FigureOptions
 from frictionlab.study.written import column_of, number_of
 from frictionlab.values import columns
-from frictionlab.values.notes import value_text
+from frictionlab.values.notes import Unfit, value_text
+from frictionlab.values.units import in_units
 from frictionlab.values.validation import checked_value
 
 STUDY_KEYS = (
@@ -171,15 +172,20 @@ class StudyKeys(Record):
         return self
 
 
-def column_in_si(name: str) -> tuple[str, str]:
-    """Return the column in SI units of a measured one, and its unit. Raises ValueError for one without a unit."""
-    if name in MEASURED:
-        return MEASURED[name]
-    field = column_of(name)
-    unit = unit_of(field.rpartition(".")[2]) if name.startswith("scene.dimensional.") else None
-    if unit is None:
+def column_in_si(name: str, unit: str) -> tuple[str, float]:
+    """Return the column in SI units of a measured one, and what its numbers in this unit are multiplied by.
+
+    Raises ValueError for a column without a unit, and for a unit that is not one of the column.
+    """
+    column, wanted = MEASURED.get(name, (column_of(name), None))
+    if wanted is None and name.startswith("scene.dimensional."):
+        wanted = unit_of(column.rpartition(".")[2])
+    if wanted is None:
         raise ValueError(f"has no unit; {', '.join(MEASURED)} and scene.dimensional.<path> may have one")
-    return field, unit
+    factor = in_units(f"1 {unit}", wanted)
+    if isinstance(factor, Unfit):
+        raise ValueError(factor.what)
+    return column, float(factor)
 
 
 def range_in_numbers(

@@ -56,9 +56,8 @@ from frictionlab.study.sweeps import Sweeps, read_sweeps
 from frictionlab.study.written import column_of, read_law_numbers, scene_is_in_si, units_of_law
 from frictionlab.study.yaml_source import Source
 from frictionlab.values import columns
-from frictionlab.values.notes import KeyPath, Notes, StudyError, Unfit, did_you_mean, number_text
+from frictionlab.values.notes import KeyPath, Notes, StudyError, did_you_mean, number_text
 from frictionlab.values.quantities import dimensions
-from frictionlab.values.units import in_units
 from frictionlab.values.validation import build_record, number_paths
 
 LARGEST_GRID = 100_000_000
@@ -301,12 +300,9 @@ class _StudyReader:
                 self._notes.on_key(("data", "units"), "go with a scene in SI units: scene.dimensional")
                 continue
             try:
-                read = in_units(f"1 {unit}", column_in_si(name)[1])
-                wrong = read.what if isinstance(read, Unfit) else ""
+                column_in_si(name, unit)
             except ValueError as problem:
-                wrong = str(problem)
-            if wrong:
-                self._notes.add(("data", "units", name), wrong)
+                self._notes.add(("data", "units", name), str(problem))
 
     def _range(
         self, name: str, given: FreeRange, classes: list[type[FrictionLaw]], in_si: bool

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.faults import describe_error
+from frictionlab.laws.faults import call_of, describe_error
 from frictionlab.testing.example import Check, Given, Violation
 from frictionlab.testing.strategies import NoParameters, quietly
 
@@ -108,7 +108,7 @@ class Report:
         return [outcome for outcome in self.outcomes if not outcome.good]
 
     def outcome(self, check: str) -> Outcome:
-        """That of one check. Raises KeyError."""
+        """Return the outcome of one check. Raises KeyError."""
         return {outcome.check: outcome for outcome in self.outcomes}[check]
 
     def count(self, result: Result) -> int:
@@ -216,9 +216,8 @@ def _change(check: Check, problem: Exception, law: type[FrictionLaw]) -> str:
         return check.change
     if isinstance(problem, NoParameters):
         return "widen the bounds of the parameters, or take fewer together for a mistake"
-    if isinstance(problem, ArithmeticError | ValueError) and "=0)" in describe_error(
-        problem, _files(law), asked=True
-    ):
+    _, numbers = call_of(problem, _files(law))
+    if isinstance(problem, ArithmeticError | ValueError) and [*numbers.values()][-1:] == [0.0]:
         return "let that line hold at 0, too: a body that sticks does not slip"
     return "correct that line, or bound the parameters: Annotated[fl.Positive, Field(le=10)]"
 

@@ -18,9 +18,8 @@ from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.scene import Scene
 from frictionlab.study.keys import column_in_si
 from frictionlab.values.columns import BELT_SPEEDS
-from frictionlab.values.notes import Unfit, closest
+from frictionlab.values.notes import closest
 from frictionlab.values.quantities import Floats
-from frictionlab.values.units import in_units
 from frictionlab.values.validation import field_path, number_paths
 
 OF_A_PATH = ("time", "slip", "friction")
@@ -131,13 +130,10 @@ def _in_si(table: pd.DataFrame, name: str, unit: str, where: str) -> pd.DataFram
         there = ", ".join(map(str, table.columns))
         raise WrongData(f"{where}: units.{name}: there is no such column, there are {there}")
     try:
-        column, wanted = column_in_si(name)
+        column, factor = column_in_si(name, unit)
     except ValueError as problem:
         raise WrongData(f"{where}: units.{name}: {problem}") from None
-    factor = in_units(f"1 {unit}", wanted)
-    if isinstance(factor, Unfit):
-        raise WrongData(f"{where}: units.{name}: {factor.what}")
-    return table.assign(**{column: _numbers(table[name], name, where) * float(factor)}).drop(columns=name)
+    return table.assign(**{column: _numbers(table[name], name, where) * factor}).drop(columns=name)
 
 
 def _as_table(data: Any, where: str) -> pd.DataFrame:

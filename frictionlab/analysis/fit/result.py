@@ -137,7 +137,7 @@ class FittedLaw:
 
     @property
     def on_a_bound(self) -> list[bool]:
-        """Which numbers are on an end of their range."""
+        """Check which numbers are on an end of their range."""
         shares = self.found.best.shares
         return [bool(min(share, 1.0 - share) < ON_A_BOUND) for share in shares]
 
@@ -453,13 +453,8 @@ def _told(law: FittedLaw, number: FreeNumber, error: float) -> str:
     said = with_error(value / unit.size, error / unit.size, 4)
     whole = low <= number.low * (1.0 + 1e-9) and high >= number.high * (1.0 - 1e-9)
     wide = math.isnan(error) and not min(value - number.low, number.high - value) <= 0.0
-    end = (
-        ", the whole range: the data do not tell"
-        if whole
-        else "; blocks tell less than its range"
-        if wide
-        else ""
-    )
+    untold = "; blocks tell less than its range" if wide else ""
+    end = ", the whole range: the data do not tell" if whole else untold
     of = f" {unit.unit}" if unit.unit else ""
     return f"{name} = {said}{of} (95 %: {low / unit.size:.4g} to {high / unit.size:.4g}{of}{end})"
 
@@ -501,9 +496,8 @@ def _beyond(fit: FittedLaws) -> str | None:
     scene = fit.best.model.scene
     if fit.measured.is_path or scene is None or len(fit.measured.groups) > 1:
         return None
-    unit = ShownUnit("m/s") if scene.dimensional is not None else ShownUnit("")
-    end = friction_free_velocity(scene) * (
-        1.0 if scene.dimensional is None else scene.dimensional.scales.velocity
-    )
+    si = scene.dimensional
+    unit, scale = ("", 1.0) if si is None else ("m/s", si.scales.velocity)
+    end = scale * friction_free_velocity(scene)
     slowest = float(fit.measured.table[fit.measured.along].abs().min())
-    return unit.text(end).strip() if 0.0 < end < slowest else None
+    return ShownUnit(unit).text(end).strip() if 0.0 < end < slowest else None

@@ -36,7 +36,7 @@ def start(mass: Mass) -> tuple[float, float, float, float]:
 
 
 class Equations(ABC):
-    """Those of one scene. The last number of a state is the integral of the friction coefficient along x1.
+    """Equations of one scene. The last number of a state is the integral of the friction coefficient along x1.
 
     places: those of positions and velocities in a state; scales: what an absolute tolerance is told in, by number.
     Raises ArithmeticError after ``most_calls``.

@@ -64,7 +64,7 @@ def test_no_two_files_of_tests_have_one_name() -> None:
 
 
 def test_docstrings_begin_with_a_verb_or_a_noun() -> None:
-    bad = re.compile(r'^\s*r?"""(The|What|Whether|Of|How|Where)\b')
+    bad = re.compile(r'^\s*r?"""(The|What|Whether|Of|How|Where|That|Those|These|This|Which|Who|It)\b')
     sources = [*PACKAGE.rglob("*.py"), *(PACKAGE.parent / "plugins").rglob("*.py")]
     found = [
         f"{path}: {line}"

@@ -73,7 +73,7 @@ class CurveFigure:
 
     @cached_property
     def looks(self) -> Looks:
-        """Those of the curves that are drawn."""
+        """Return the looks of the curves that are drawn."""
         return Looks(drawn_once(self.family.curves, self.columns))
 
     @cached_property
@@ -122,7 +122,7 @@ class CurveFigure:
         sheet.add_legend([*named, *self._entries()], about)
 
     def _ends(self, panel: Panel, column: str) -> list[CurveEnd]:
-        """Those of the curves of a picture."""
+        """Return the ends of the curves of a picture."""
         found = []
         for curve in (each for each in self.looks.curves if each.panel == panel):
             x, y = curve.column(self.family.abscissa), curve.column(column)

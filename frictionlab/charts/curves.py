@@ -54,7 +54,7 @@ class CurveData:
         return self.rows[name].to_numpy(dtype=float)
 
     def having(self, status: str) -> NDArray[np.bool_]:
-        """Which of its points have this status."""
+        """Select those of its points that have this status."""
         return (self.rows["status"] == status).to_numpy(dtype=bool)
 
     def rows_in(self, table: pd.DataFrame, columns: Container[str]) -> pd.DataFrame:

@@ -21,7 +21,7 @@ from frictionlab.values.units import ShownUnit
 
 
 def v_lin_of(study: Study, values: Mapping[str, float | str]) -> float:
-    """That of the scene with these inputs, by their columns and as those show them.
+    """Compute V_lin of the scene with these inputs, by their columns and as those show them.
 
     NaN where it asks for the law, and where there is no such scene, as there is none of a normal load below zero.
     """

@@ -56,7 +56,7 @@ OTHER_FIGURES = {
     "velocity_harmonics": ("Amplitudes of the harmonics of the velocity", ", a picture each"),
     "friction_harmonics": ("Amplitudes of the harmonics of the friction coefficient", ", a picture each"),
 }
-"""Those that only some tables have: what they show, and more of it for a caption."""
+"""Figures that only some tables have: what they show, and more of it for a caption."""
 BIFURCATION = "Every state that motions end in, over belt speed"
 MOST_OF_A_NAME = 24
 """Letters of a law in the axis of differences."""
@@ -105,7 +105,7 @@ class FigureData:
 
     @classmethod
     def of(cls, study: Study, table: pd.DataFrame, title: str = "", **more: Any) -> FigureData:
-        """That of a table of a study, and of what else of its run is given."""
+        """Collect the data of a table of a study, and of what else of its run is given."""
         told: dict[str, Any] = {"options": study.figures, "units": study.units, "words": study.in_words}
         told["v_lin"] = None if study.links else partial(v_lin_of, study)
         return cls(table, title, **told | more)
@@ -175,7 +175,7 @@ class FigureData:
 
     @cached_property
     def columns(self) -> dict[str, list[str]]:
-        """Those that each of ``FIGURES`` shows, in SI units where the scene is; one without any is not there."""
+        """Return the columns that each of ``FIGURES`` shows, in SI units where the scene is; none without any."""
         shown = {}
         for name, wanted in FIGURES.items() if self.family else ():
             given = [self._shown.get(IN_SI.get(column, ""), column) for column in wanted]

@@ -89,7 +89,7 @@ def _draw_loops(axes: Axes, found: Any, looks: list[Any]) -> None:
 
 
 def _shown(rows: int) -> slice:
-    """Those in the middle of a path that are drawn."""
+    """Return the samples in the middle of a path that are drawn."""
     first = max(0, rows // 2 - POINTS_SHOWN // 2)
     return slice(first, first + POINTS_SHOWN)
 

@@ -130,7 +130,7 @@ class DrawnOrbit(NamedTuple):
         return self.samples[name].to_numpy(dtype=float)
 
     def label(self, name: str) -> str:
-        """That of an axis."""
+        """Return the label of an axis."""
         return FRICTION_LABEL if name == "friction" else word(self.shown(name))
 
     @property
@@ -248,7 +248,7 @@ def _worth_drawing(family: Family, panel: tuple[SweptValue, ...], most: int) -> 
 
 
 def _values(family: Family, panel: tuple[SweptValue, ...], positive: str | None = None) -> list[float]:
-    """Those along the axis of a panel, or those of them at which a column of some curve is positive."""
+    """Return the values along the axis of a panel, or those at which a column of some curve is positive."""
     found = set[float]()
     for curve in (each for each in family.curves if each.panel == panel):
         values = curve.column(family.abscissa)

@@ -202,7 +202,7 @@ def map_of_curves(curves: pd.DataFrame) -> MapFigure | None:
 
 
 def _figure(table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str]) -> MapFigure | None:
-    """Those over the last two numbers that every law has; None where they take too few values."""
+    """Draw the maps over the last two numbers that every law has; None where they take too few values."""
     within = table.groupby("law")[list(numbers)].nunique()  # a law without a parameter has no map over it
     most = [name for name in numbers if name.startswith("scene.") or (within[name] > 1).all()]
     if len(most) < 2 or table[most[-2]].nunique() < LEAST_VALUES:

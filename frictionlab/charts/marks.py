@@ -34,7 +34,7 @@ class OnsetMark(NamedTuple):
 
 
 def onsets_on(curve: CurveData, onsets: pd.DataFrame | None, along: str | None = None) -> list[OnsetMark]:
-    """Those of a curve, by the inputs that are equal along it, but for the end of reversal where it is V_lin.
+    """Return the onsets of a curve, by the inputs equal along it, but for an end of reversal that is V_lin.
 
     along: the column that they are marked along, the belt speed as given where left out.
     """

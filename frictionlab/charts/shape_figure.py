@@ -43,7 +43,7 @@ class ShapeFigure:
 
     @classmethod
     def of(cls, family: Family, curves: pd.DataFrame) -> ShapeFigure | None:
-        """That of a table; None where no curve has a verdict. curves: of ``curves.csv``."""
+        """Collect what the figure of a table shows; None where no curve has a verdict. curves: of ``curves.csv``."""
         if not is_belt_speed(family.abscissa) or "shape_start" not in curves:
             return None
         looks = Looks(drawn_once(family.curves, ["mean_friction"]))

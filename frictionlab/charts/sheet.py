@@ -152,7 +152,7 @@ class Sheet(NamedTuple):
         self.figure.set_figheight(min(height, _HIGHEST) if self.limited else height)
 
     def axes(self, place: int) -> Axes:
-        """Those of the picture at this place, from 0, row by row."""
+        """Return the axes of the picture at this place, from 0, row by row."""
         return self.own or self.figure.add_subplot(self.high, self.wide, place + 1)
 
     @property

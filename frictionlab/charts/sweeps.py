@@ -37,7 +37,7 @@ class SweptValue(NamedTuple):
 
     @classmethod
     def of(cls, name: str, cell: Any) -> SweptValue:
-        """That of a cell of a table."""
+        """Read the value of a cell of a table."""
         return cls(name, None if pd.isna(cell) else cell if isinstance(cell, str) else float(cell))
 
     @property

@@ -28,7 +28,7 @@ FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "llvmlite", "typing", 
 
 
 def names_used(code: CodeType) -> Iterator[str]:
-    """Those of the functions inside it included."""
+    """Return the names that a function uses, those of the functions inside it included."""
     yield from code.co_names
     for constant in code.co_consts:
         if isinstance(constant, CodeType):

@@ -70,7 +70,7 @@ def _interface(law: FrictionLaw) -> type[FrictionLaw]:
 
 
 def _methods(law: FrictionLaw) -> tuple[KernelMethod, ...]:
-    """Those that kernels call on a law of this structure."""
+    """Return the methods that kernels call on a law of this structure."""
     interface, structure = _interface(law), law.structure()
     return tuple(
         each
@@ -82,7 +82,7 @@ def _methods(law: FrictionLaw) -> tuple[KernelMethod, ...]:
 
 
 def _called(law: FrictionLaw) -> tuple[KernelMethod, ...]:
-    """Those of them that are called by address."""
+    """Return those of its methods that are called by address."""
     return tuple(each for each in _methods(law) if each.takes)
 
 

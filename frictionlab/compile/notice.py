@@ -31,7 +31,7 @@ _compiling = _Compiling()
 
 
 def add_to_compiling(seconds: float) -> None:
-    """This thread has waited so long [s] for machine code."""
+    """Add how long [s] this thread has waited for machine code."""
     _compiling.seconds += seconds
 
 

@@ -73,7 +73,7 @@ class FrictionCurve:
 
     @property
     def inside(self) -> NDArray[np.bool_]:
-        """Which points lie between rest and the end of reversal, apart from either by more than rounding."""
+        """Select the points between rest and the end of reversal, apart from either by more than rounding."""
         share = self.speed / self.end.value
         return (share > NO_SHARE) & (share < 1.0 - NO_SHARE)
 

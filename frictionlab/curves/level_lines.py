@@ -96,7 +96,7 @@ class _Grid(NamedTuple):
         return np.stack([self.x[x], self.y[y]], axis=1)
 
     def edges_crossed(self) -> list[GridEdge]:
-        """Those between corners of different signs, as corners (first, second)."""
+        """Return the edges between corners of different signs, as corners (first, second)."""
         found: list[GridEdge] = []
         known, above = self.known, self.known >= 0.0
         for first, second in ((1, 0), (0, 1)):
@@ -163,7 +163,7 @@ def _with_hidden(grid: _Grid, function: OfTwoNumbers) -> _Grid:
 
 
 def _chords(function: OfTwoNumbers, grid: _Grid, edges: dict[GridEdge, int]) -> list[tuple[int, int]]:
-    """Which roots a line joins: two on the edges of a cell; of four, by the sign in the middle of the cell."""
+    """Pair the roots that a line joins: two on the edges of a cell; of four, by the sign in its middle."""
     chords, saddles = [], []
     for y in range(len(grid.y) - 1):
         for x in range(len(grid.x) - 1):

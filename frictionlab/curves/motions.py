@@ -68,7 +68,7 @@ class CurveMotions:
             self.scale = 1.0
 
     def at(self, belt_speeds: Sequence[float]) -> list[MotionSeen]:
-        """Those at these belt speeds, ascending."""
+        """Return the motions at these belt speeds, ascending."""
         if not len(belt_speeds):
             return []
         self.looks += len(belt_speeds)

@@ -91,12 +91,12 @@ class Auto(Method):
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
     ) -> list[FoundState]:
-        """Those that shooting finds: no other method follows motions to wherever they end."""
+        """Return the states that shooting finds: no other method follows motions to wherever they end."""
         shooting = METHODS_BY_COST[-1]
         return [] if any(shooting.refusals(scenes, law)) else shooting.states(scenes, law, tolerance, starts)
 
     def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
-        """That of shooting: no other method follows a motion from a start."""
+        """Follow a motion by shooting: no other method follows one from a start."""
         shooting = METHODS_BY_COST[-1]
         return [] if any(shooting.refusals([scene], law)) else shooting.motion(scene, law, periods, tolerance)
 

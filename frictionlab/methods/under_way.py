@@ -41,7 +41,7 @@ def told_to(under_way: UnderWay) -> Iterator[None]:
 
 
 def each_told(points: Iterable[Each], share: float = 1.0) -> Iterator[Each]:
-    """These, each counted as so much of a point answered when the next one is asked for."""
+    """Yield points, each counted as so much of one answered when the next one is asked for."""
     now = _under_way.get()
     for each in points:
         yield each

@@ -38,7 +38,7 @@ from frictionlab.values.quantities import Floats
 EVEN_SHARES = np.sin(0.5 * np.pi * np.array([0.125, 0.5, *range(1, 33)]) / 32)
 """Belt speeds of a curve over its end of reversal, and two more near rest."""
 FIRST_SHARES = np.array([0.02, 0.05, *np.arange(0.1, 1.25, 0.1)])
-"""Those over V_lin between which the end of reversal is sought where it is not V_lin."""
+"""Shares of V_lin between which the end of reversal is sought where it is not V_lin."""
 SHARP = 3e-5
 """Share of the end of reversal within which it is then found."""
 _ROUNDS = 16
@@ -211,7 +211,7 @@ class _Sought(NamedTuple):
 
     @classmethod
     def of(cls, study: Study, curves: pd.DataFrame) -> _Sought | None:
-        """Those of the curves' law and method; None where an axis does not vary this law."""
+        """Return the axes of the curves' law and method; None where an axis does not vary this law."""
         (law,) = (each for each in study.laws if each.label == curves.iloc[0]["law"])
         methods = tuple(each for each in study.methods if each.label == curves.iloc[0]["method"])
         first, second = (_Along.of(axis, law) for axis in swept_numbers(study))
@@ -220,7 +220,7 @@ class _Sought(NamedTuple):
 
     @property
     def columns(self) -> list[str]:
-        """Those of both axes."""
+        """Return the columns of both axes."""
         return [name for axis in self.axes for name in axis.columns]
 
     def grid(self, curves: pd.DataFrame, measure: str) -> Floats:

@@ -71,7 +71,7 @@ def _matching(where: dict[str, WhereValue], table: pd.DataFrame) -> pd.DataFrame
 
 
 def _is(wanted: WhereValue, values: pd.Series) -> Any:
-    """Which values are as wanted."""
+    """Select the values that are as wanted."""
     if isinstance(wanted, list):
         return np.any([_is(one, values) for one in wanted], axis=0)
     if isinstance(wanted, str):

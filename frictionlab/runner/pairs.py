@@ -184,7 +184,7 @@ NOBODY = -1
 
 @dataclass(frozen=True)
 class Ranking:
-    """Who is ranked, and the points at which two or more of them have a number, along the axis where there is one.
+    """Ranked laws, and the points at which two or more of them have a number, along the axis where there is one.
 
     ranked: of each, its law and the values that tell it apart. points: the inputs of each point. mean, error: point
     by point for each of them, NaN where it has none. first: the place of the highest, ``NOBODY`` where it is not
@@ -234,7 +234,7 @@ class Ranking:
 
 
 def ranking_of(table: pd.DataFrame, along: str) -> Ranking | None:
-    """That of a table; None where fewer than two are ranked. along: the input of the axis.
+    """Return the ranking of a table; None where fewer than two are ranked. along: the input of the axis.
 
     Laws are ranked, with each value of their own parameters. Of one law without any, the curves of each set of swept
     values are, where they are few.

@@ -1,4 +1,4 @@
-"""One tidy table of a run: inputs first, then what was found, one row per scene, law and method."""
+"""Tidy table of a run: inputs first, then what was found, one row per scene, law and method."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who solves the pieces of a run: threads, processes of this machine, the workers of a cluster, any executor."""
+"""Workers that solve the pieces of a run: threads, processes of this machine, those of a cluster, any executor."""
 
 from __future__ import annotations
 

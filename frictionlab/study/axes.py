@@ -111,7 +111,7 @@ class SpeedRange(_Ends):
         return SweepRange.model_construct(start=self.start, stop=self.stop, num=num).values()
 
     def first(self) -> tuple[float, ...]:
-        """Those to begin with."""
+        """Return the belt speeds to begin with."""
         return self._even(FIRST_SPEEDS)
 
     def about(self) -> tuple[float, ...]:

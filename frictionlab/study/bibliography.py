@@ -88,7 +88,7 @@ def unpublished_source(key: str, words: str) -> Publication:
 
 
 def publications_named(text: str, known: Iterable[Publication]) -> list[Publication]:
-    """Those of the known publications that a text names, in the order of the text."""
+    """Return the known publications that a text names, in the order of the text."""
     words = " ".join(text.split())
     places = {each: _place(each, words) for each in known}
     return sorted((each for each, place in places.items() if place >= 0), key=lambda each: places[each])

@@ -91,7 +91,7 @@ class Expectation(Record):
 
     @property
     def kind(self) -> str:
-        """Which kind of claim it is: its key."""
+        """Return the key of the claim, which is its kind."""
         return next((key for key in _GO_WITH if getattr(self, key) is not None), "column")
 
     @property

@@ -97,7 +97,7 @@ def check_against(given: FigureOptions, laws: tuple[str, ...], notes: Notes) -> 
 
 
 def figure_options(given: Mapping[str, Any], laws: tuple[str, ...]) -> FigureOptions:
-    """Those of keywords in Python, checked as a study's are. laws: the labels of the study. Raises WrongValues."""
+    """Read options from keywords in Python, checked as a study's. laws: the study's labels. Raises WrongValues."""
     read, notes = FigureOptions(**given), Notes()
     check_against(read, laws, notes)
     if notes.all:

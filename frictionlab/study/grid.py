@@ -250,16 +250,16 @@ class StudyGrid:
 
     @cached_property
     def scene_axes(self) -> tuple[Axis, ...]:
-        """Those along which the scene varies."""
+        """Return the axes along which the scene varies."""
         return tuple(axis for axis in self.axes if axis.is_of_scene)
 
     @cached_property
     def speed_axis(self) -> Axis | None:
-        """That along which belt speed alone varies: of curves."""
+        """Return the axis along which belt speed alone varies: that of curves."""
         return next((axis for axis in self.axes if axis.is_of_speed), None)
 
     def own_axes(self, choice: LawChoice) -> tuple[Axis, ...]:
-        """Those along which this law varies, and the scene does not."""
+        """Return the axes along which this law varies, and the scene does not."""
         found = self._places_of_owners.get(f"laws.{choice.label}.", []) + self._places_of_owners.get("", [])
         return tuple(self.axes[place] for place in dict.fromkeys(sorted(found)))
 
@@ -269,7 +269,7 @@ class StudyGrid:
 
     @cached_property
     def _places_of_owners(self) -> dict[str, list[int]]:
-        """Which axes, apart from those of the scene, vary ``laws.<label>.``; of '': every law."""
+        """Return the places of the axes that vary ``laws.<label>.``, and not the scene; of '': every law."""
         found: dict[str, list[int]] = {}
         for place, axis in enumerate(self.axes):
             for path in axis.values if not axis.is_of_scene else ():

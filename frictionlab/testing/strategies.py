@@ -108,7 +108,7 @@ def _made(law: type[FrictionLaw], told: dict[str, Any]) -> FrictionLaw | None:
 
 @cache
 def _presences(law: type[FrictionLaw]) -> list[tuple[str, ...]]:
-    """Which parameters can be given together: found by trying, those that must be given in every one."""
+    """Find by trying which parameters can be given together; those that must be given are in every one."""
     optional = [name for name, field in law.model_fields.items() if not field.is_required()]
     must = [name for name in law.model_fields if name not in optional]
     free = [

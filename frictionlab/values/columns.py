@@ -114,11 +114,11 @@ RESULTS: dict[str, str] = {each.name: each.meaning for each in COLUMNS}
 FROM_ORBITS: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.made == "orbit")
 """Result columns that are read from orbits."""
 DERIVED: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.made == "inputs")
-"""Those that follow from a point's inputs and its mean friction."""
+"""Columns that follow from a point's inputs and its mean friction."""
 TEXT: frozenset[str] = frozenset(each.name for each in COLUMNS if each.is_text)
-"""Those that hold text; every other one holds a number, empty where it does not apply."""
+"""Columns that hold text; every other one holds a number, empty where it does not apply."""
 ALWAYS: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.group == "always")
-"""Those of every table, whatever is asked for."""
+"""Columns of every table, whatever is asked for."""
 
 
 class ColumnInSI(NamedTuple):
@@ -168,7 +168,7 @@ OF_SHAPE = (
 )
 """Result columns that the measures of a curve's shape are read from, besides the mean and its error."""
 OF_REST = "status", "stick_fraction", "reversals"
-"""Those between which stick and reversal begin and end."""
+"""Columns that change where stick and reversal begin and end."""
 
 DEFAULT: tuple[str, ...] = (
     *("mean_friction", "error", "error_kind", "status", "reason", "unique", "stick_fraction", "reversals"),
@@ -332,7 +332,7 @@ CURVES: dict[str, str] = {
 }
 """Columns of the table of curves after the inputs."""
 CURVE_MEASURES: tuple[str, ...] = tuple(name for name in CURVES if f"{name}_error" in CURVES)
-"""Those that measure a curve."""
+"""Columns that measure a curve."""
 
 ONSETS: dict[str, str] = {
     "onset": "stick_begins, stick_ends or reversal_ends, read along increasing belt speed",
@@ -367,7 +367,7 @@ ATTRACTORS: dict[str, str] = {
 }
 """Columns of the table of attractors after the inputs, one row per Poincare point where a study keeps them."""
 OF_STATES = tuple(name for name in ATTRACTORS if name not in ("point", "x", "velocity", "found_from"))
-"""Those of the states of points that have several."""
+"""Columns of the states of points that have several."""
 
 HARMONICS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",

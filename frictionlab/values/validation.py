@@ -315,7 +315,7 @@ def _message(error: Any) -> str:
 
 
 def _meant(error: Any) -> str:
-    """Which of the quoted names that are allowed a wrong name was meant to be."""
+    """Find which of the quoted names that are allowed a wrong name was meant to be."""
     if not isinstance(error["input"], str):
         return ""
     allowed = _value_mistake(error, value_text).partition("got the text")[0]

@@ -95,7 +95,7 @@ STEPPERS: dict[StepperName, StepperFacts] = {
 
 
 def steppers_of(kind: str) -> list[StepperName]:
-    """Those that step a law with this kind of memory; none for a kind that march does not know."""
+    """Return the steppers of a law with this kind of memory; none for a kind that march does not know."""
     return [name for name, facts in STEPPERS.items() if kind in facts.kinds]
 
 

@@ -53,7 +53,7 @@ class ClosedOrbits(NamedTuple):
 
     @classmethod
     def of(cls, table: Any) -> ClosedOrbits:
-        """Those of a table [n, COLUMNS]."""
+        """Read the closed orbits of a table [n, COLUMNS]."""
         return cls(*np.asarray(table).T)
 
     @property

@@ -99,7 +99,7 @@ class LaneLimits(NamedTuple):
 
 @inner
 def limits_of(law: Any, body: BodyNumbers, accuracy: float, alike: bool) -> LaneLimits:
-    """Those of a map over the span of the body."""
+    """Return the limits of a map over the span of the body."""
     coefficient = law.sliding_friction(0.0)
     friction = normal_load(body, START) * coefficient
     longest = longest_step(body, coefficient, accuracy)
@@ -121,13 +121,13 @@ def begin_lanes(law: Any, body: BodyNumbers, rows: LaneRows, longest: float) -> 
 
 @inner
 def arrived(way: LaneWay, limits: LaneLimits) -> Any:
-    """Which lanes are at the end."""
+    """Select the lanes that are at the end."""
     return way.node.tau >= (1.0 - 4e-15) * limits.end
 
 
 @inner
 def moving(way: LaneWay, limits: LaneLimits) -> Any:
-    """Which lanes have a step to take: they are neither at the end nor next to rest."""
+    """Select the lanes that have a step to take: they are neither at the end nor next to rest."""
     speed = least_of_eight(way.node.speed) if limits.alike else way.node.speed
     return (way.node.tau < (1.0 - 4e-15) * limits.end) & (speed >= limits.least)
 

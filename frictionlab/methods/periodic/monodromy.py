@@ -26,7 +26,7 @@ OF_LOGARITHM = 1e-3
 
 @inner
 def _shift(setting: Setting, z: Any, relative: float, column: int) -> float:
-    """It stays below the way the belt moves in a period: that much slip ends a period that was all stick."""
+    """Choose a shift below the way the belt moves in a period: that much slip ends a period that was all stick."""
     carried = abs(setting.belt_speed) * scales_of(setting).period
     # Large against the error of the maps, small against the way of the belt, on which the pattern of events hangs.
     shift, scalars = relative * size_of_deviation(setting.maps.per_drive.normal_load, z), setting.maps.scalars

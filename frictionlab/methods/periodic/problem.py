@@ -358,7 +358,7 @@ class PeriodicProblem:
         return self._follow(belt_speed, state, periods, how, unknown_orbit(self.size))
 
     def mapped(self, belt_speeds: Floats, states: Floats) -> Floats:
-        """These states [n, size], each at its belt speed, after all that changes in time has repeated once.
+        """Follow states [n, size], each at its belt speed, until all that changes in time has repeated once.
 
         By fine maps: as close as differences of them need.
         """
@@ -378,7 +378,7 @@ class PeriodicProblem:
         return np.asarray((ends[:n] - ends[n:]).T / (2.0 * shift))
 
     def repeated_once(self, scene: Scene, states: Floats) -> tuple[Floats, Floats]:
-        """These states [n, size] after all that changes in time has repeated once, and the mean friction along x1
+        """Return states [n, size] after all that changes in time has repeated once, and the mean friction along x1
         meanwhile [n], of motions as fine as the tolerance asks."""
         scenes = [scene] * len(states)
         ends = self.mapped(belt_speeds_of(scenes), states)
@@ -401,7 +401,7 @@ class PeriodicProblem:
 
 
 def largest_modulus(matrices: Floats) -> Floats:
-    """That of the eigenvalues of each matrix; NaN of one that holds numbers that are not finite."""
+    """Return the largest modulus of each matrix's eigenvalues; NaN of one that holds numbers that are not finite."""
     found = np.full(len(matrices), np.nan)
     known = np.isfinite(matrices).all(axis=(1, 2))
     found[known] = np.abs(np.linalg.eigvals(matrices[known])).max(axis=1)

@@ -86,7 +86,7 @@ class Scales(NamedTuple):
 
 
 class Scalars(NamedTuple):
-    """Which coordinates of a state are logarithms of scalars, and the smallest unit they are measured by."""
+    """Coordinates of a state that are logarithms of scalars, and the smallest unit they are measured by."""
 
     first: int
     end: int

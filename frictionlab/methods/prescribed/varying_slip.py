@@ -45,7 +45,7 @@ class VaryingSlip(NamedTuple):
 
     @classmethod
     def of(cls, signals: Signals, normal_load: float) -> VaryingSlip:
-        """That of a scene."""
+        """Read the slip of a scene."""
         edges = signals.edges()
         share = signals.normal_load.scaled(1.0 / normal_load)
         every = (*signals.belt, share)

@@ -167,7 +167,7 @@ class _Balancing(NamedTuple):
         return abs(self.pull(amplitude)) - abs(self.mass.force)
 
     def amplitudes(self) -> Floats:
-        """Those that enclose the balances, and the belt speed, at which slip begins to reverse.
+        """Return amplitudes that enclose the balances, and the belt speed, at which slip begins to reverse.
 
         Above the largest, friction that steady sliding bounds cannot balance inertia, and what grows with speed
         damps. Below the least it cannot balance the load: its harmonic is at most twice that of steady sliding, or

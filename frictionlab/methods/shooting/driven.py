@@ -269,7 +269,7 @@ class SteadyStates(Ledger):
         )
 
     def _found_states(self, i: int) -> list[FoundState]:
-        """Those that the starts reached, each once."""
+        """Return the states that the starts reached, each once."""
         reached = self.followed[i].reached if i in self.followed else []
         different: list[Attractor] = []
         for one in reached:

@@ -23,7 +23,7 @@ from frictionlab.report.equation import equations
 from frictionlab.report.facts import Facts
 from frictionlab.report.sentences import tell
 from frictionlab.report.sources import bibtex, published
-from frictionlab.report.tables import Cell, Grid, grid, in_order, number, size
+from frictionlab.report.tables import Cell, Grid, grid, in_order, number, size, symbol_html
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.results import Results, folder_of
 from frictionlab.runner.words import counted
@@ -63,6 +63,7 @@ def report(saved: Results, drawn: FigureData | None = None) -> str:
 
         shown = pictures(run)
     lines = equations(saved.study)
+    symbols = [symbol_html(question.shown_name(saved.study, name)) for name in saved.study.units]
     tables = {"found": findings, "asked": question, "versions": _versions(saved), "runs": _runs(saved)}
     again = {"commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN, "bibtex": bibtex([saved])}
     return rendered(
@@ -73,7 +74,7 @@ def report(saved: Results, drawn: FigureData | None = None) -> str:
         pictures=shown,
         paragraphs=paragraphs(run),
         equations=lines,
-        letters=tell(say.ON_LETTERS, " ".join(lines)),
+        letters=tell(say.ON_LETTERS, " ".join([*lines, *symbols])),
         references=published(run.cited),
         yaml=yaml_text(saved.study.resolved()),
         **tables,

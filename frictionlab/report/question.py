@@ -12,6 +12,7 @@ from frictionlab.report import sentences as say
 from frictionlab.report.sentences import tell
 from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, html, in_order, number, settings, symbol_html
+from frictionlab.runner.table import cells
 from frictionlab.scene.dimensional import without_unit
 from frictionlab.scene.units import own_length
 from frictionlab.scene.waveforms import SINE, as_fraction
@@ -138,7 +139,7 @@ def methods_grid(study: Study) -> Grid:
 
 def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
     """Return its words, its kind if that is another name, the first line of its text, its parameters with values."""
-    told = settings({f"law.{parameter}": value for parameter, value in parameters.items()})
+    told = settings({f"law.{parameter}": value for parameter, value in cells(parameters).items()})
     return [label, "" if name == label else name, text.partition("\n")[0], told]
 
 

@@ -213,11 +213,18 @@ def has_letter(*letters: str) -> Callable[[str], bool]:
     return lambda equations: any(f"<i>{letter}</i>" in equations for letter in letters)
 
 
+def counts_cycles(letter: str) -> Callable[[str], bool]:
+    """Check for equations in the circular frequency, and a table that has this letter in its place."""
+    return lambda equations: has_letter("ω")(equations) and has_letter(letter)(equations)
+
+
 ON_LETTERS: Sentences = {
     "v is the slip velocity.": has_letter("v"),
     "T is the friction coefficient of the law along it; a mass that sticks has v = 0.": has_letter("T"),
     "w is the waveform.": has_letter("w"),
     "H is the receptance of the table, harmonic by harmonic.": has_letter("H"),
     "Forces are in N, lengths in m, t in s.": has_letter("M", "t"),
+    "ω is 2π times the f of the table.": counts_cycles("f"),
+    "ω is 2π times the n of the table.": counts_cycles("n"),
     "Other letters have their numbers in the table below.": bool,
 }

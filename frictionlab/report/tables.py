@@ -16,7 +16,7 @@ import pandas as pd
 from markupsafe import Markup, escape
 
 from frictionlab.scene.waveforms import told
-from frictionlab.values.columns import symbol, typeset, unit_shown, word
+from frictionlab.values.columns import SHOWN_IN, symbol, typeset, unit_shown, word
 from frictionlab.values.quantities import Written
 
 _RENAMED = {"varphi": "phi", "varepsilon": "epsilon", "infty": "infin"}  # what TeX calls so
@@ -116,8 +116,10 @@ def settings(values: Mapping[str, Any], digits: int = 6) -> Markup:
 
 def setting(name: str, value: Any, digits: int = 6) -> Markup:
     """Return one input with its value and unit, on one line where it is short."""
-    unit = "" if isinstance(value, Written) else unit_html(name)
-    told = Markup("{} = {}{}").format(symbol_html(name), number(value, digits), unit)
+    unit, shown = (
+        ("", f"{name}{SHOWN_IN}{value.unit}") if isinstance(value, Written) else (unit_html(name), name)
+    )
+    told = Markup("{} = {}{}").format(symbol_html(shown), number(value, digits), unit)
     short = len(told.striptags()) <= SHORT_SETTING
     return Markup('<span class="short">{}</span>').format(told) if short else told
 

@@ -358,13 +358,16 @@ GROUPS = {name: group for name, group in vars(say).items() if name.isupper() and
 TEMPLATES = [(name, words) for name, group in GROUPS.items() for words in group]
 
 
+LETTERS = "<i>v</i><i>T</i><i>w</i>", "<i>H</i><i>t</i>", "<i>ω</i><i>f</i>", "<i>ω</i><i>n</i>"
+
+
 @pytest.fixture(scope="module")
 def everything_told() -> list[str]:
     """The paragraphs of every table above, and of every scene."""
     tables = [*WHO_IS_HIGHEST_WHERE.values(), [curve("coulomb", [NONE, NONE])], [SEVERAL]]
     in_si = {"mass": "3 kg", "stiffness": "300 N/m", "belt_speed": "1 m/s", "normal_load": "1 N"}
     units = [say.tell(say.ON_UNITS, study_of(scene).scene) for scene in (BODY, {"dimensional": in_si})]
-    letters = [say.tell(say.ON_LETTERS, text) for text in ("<i>v</i><i>T</i><i>w</i>", "<i>H</i><i>t</i>")]
+    letters = [say.tell(say.ON_LETTERS, text) for text in LETTERS]
     return [*(" ".join(told(*rows)) for rows in tables), *units, *letters, *SHAPES, *ATTENTION, *SCENES]
 
 

@@ -16,6 +16,7 @@ import pandas as pd
 import pytest
 from fake_methods import Fake, breaks_down, faked, register
 from fig_4b import COULOMB
+from markupsafe import Markup
 from pages import Page, complaints
 from profiles import deep, some
 from run_folders import interrupted_after_one_piece, without_stamps
@@ -669,3 +670,22 @@ def test_what_is_commented_out_in_a_new_study_is_right_too(tmp_path: Path) -> No
     assert study.keep.orbit == 200
     assert study.scene.degrees_of_freedom == 2
     assert [law.label for law in study.laws] == ["coulomb", "slippery"]
+
+
+def test_parameters_in_a_list_are_told_one_by_one(ran: Runner) -> None:
+    law = {"kind": "maxwell-slip", "mu": [0.3, 0.1], "stiffness": [8, 3]}
+    said = Markup(report(ran(laws=[law]))).striptags()
+
+    assert "mu[0] = 0.3" in said
+    assert "stiffness[1] = 3" in said
+
+
+def test_a_frequency_in_hertz_is_f_wherever_it_is_told(ran: Runner) -> None:
+    drive = {"frequency": "300 Hz", "amplitude": "40 N"}
+    body = {"mass": "3 kg", "stiffness": "20 N/um", "normal_load": "150 N", "belt_speed": "1 mm/s"}
+    sweep = {"scene.dimensional.belt_speed": ["1 mm/s", "2 mm/s", "3 mm/s", "4 mm/s", "5 mm/s", "6 mm/s"]}
+    said = Markup(report(ran(scene={"dimensional": body | {"drive": drive}}, sweep=sweep))).striptags()
+
+    assert "f = 300 Hz" in said
+    assert "ω = 300" not in said
+    assert "ω is 2π times the f of the table." in said

@@ -34,6 +34,8 @@ from frictionlab.runner.words import counted
 
 PRINTED = ("numpy", "numba", "scipy")
 """Packages in the small print of a chart, besides the peers."""
+LETTERS_AN_INCH = 16
+"""Letters of the small print."""
 ACCOUNT, PAGE_NAME = "bench.json", "index.html"
 ENTRY_KEYS = {
     *("kind", "name", "title", "notes", "missing", "summary", "tables", "pictures"),
@@ -113,18 +115,21 @@ def draw(result: SectionResult, folder: Path) -> list[dict[str, str]]:
     with mpl.rc_context(look):
         if (figure := result.figure()) is None:
             return []
-        _print_below(figure, textwrap.fill(small_print(circumstances()), 110))
+        print_below(figure, small_print(circumstances()))
         drawn, _ = write_figure(figure, folder / f"{stem}.svg")
     drawn.write_text(_DIGITS.sub(r"\1", drawn.read_text(encoding="utf-8")), encoding="utf-8")
     return [{"file_stem": stem, "caption": result.caption}]
 
 
-def _print_below(figure: Figure, text: str) -> None:
-    """Small print at the lower right, in a strip that the layout leaves free."""
+def print_below(figure: Figure, text: str) -> None:
+    """Write small print at the lower right, in a strip that the layout and legends below pictures leave free."""
+    text = textwrap.fill(text, int(LETTERS_AN_INCH * figure.get_figwidth()))
     strip = 0.12 * (1 + text.count("\n")) / figure.get_figheight()
     engine = figure.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
         engine.set(rect=(0.0, strip, 1.0, 1.0 - strip))
+    for legend in (each for each in figure.legends if getattr(each, "_outside_loc", None) == "lower"):
+        legend.borderaxespad += 72.0 * strip * figure.get_figheight() / legend.prop.get_size_in_points()
     figure.text(0.995, 0.1 * strip, text, ha="right", va="bottom", fontsize=6.5, color="0.3")
 
 

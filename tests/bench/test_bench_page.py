@@ -8,13 +8,15 @@ from pathlib import Path
 
 import pytest
 from bench_lists import loaded, texts
+from matplotlib.lines import Line2D
 from pages import Page
 from profiles import deep
 
 from frictionlab import bench, cli
 from frictionlab.bench import page as pages
-from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page, circumstances, small_print
+from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page, circumstances, print_below, small_print
 from frictionlab.bench.peers import base
+from frictionlab.charts.sheet import blank_figure
 from frictionlab.methods.reduced import common
 
 LIST = """\
@@ -220,3 +222,18 @@ def test_every_setting_is_told_with_its_place(tmp_path: Path) -> None:
     text = (tmp_path / name).with_suffix(".md").read_text()
     assert "| model alone, μs | its error alone, μs |" in text
     assert json.loads(json.dumps(pages.entry_of(found, [], []))).keys() == pages.ENTRY_KEYS
+
+
+@pytest.mark.parametrize("width", [3.0, 6.9])
+def test_small_print_lies_below_the_legend_and_within_the_figure(width: float) -> None:
+    figure = blank_figure(width, 3.0)
+    line = Line2D([], [], label="a peer")
+    figure.add_subplot().set_xlabel("time")
+    legend = figure.legend(handles=[line, line, line], loc="outside lower center")
+    print_below(figure, small_print(circumstances()))
+    figure.canvas.draw()
+    text = figure.texts[0].get_window_extent()
+
+    assert text.y1 < legend.get_window_extent().y0
+    assert text.x0 > 0.0
+    assert figure.axes[0].xaxis.label.get_window_extent().y0 > legend.get_window_extent().y1

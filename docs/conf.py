@@ -38,7 +38,7 @@ napoleon_preprocess_types = True  # classes of frictionlab lead to their entry
 napoleon_type_aliases = {
     name: f":class:`~frictionlab.{module}.{name}`"
     for name, module in {
-        "DriftSpeed": "runner.drift",
+        "DriftSpeed": "runner.steady_state",
         "Equivalent": "analysis.fit.equivalent",
         "FittedLaws": "analysis.fit.result",
         "Needs": "analysis.needs.needs",

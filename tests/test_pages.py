@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import runpy
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,15 @@ def test_the_pages_of_the_python_interface_have_every_public_name() -> None:
     shown = set(re.findall(r":: frictionlab\.(\w+)", page)) | set(re.findall(r"`(\w+)`", page))
 
     assert sorted(set(fl.__all__) - shown) == []
+
+
+def test_every_entry_of_the_pages_is_in_its_module() -> None:
+    pages = "".join(page.read_text() for page in DOCS.glob("*.md"))
+    entries = re.findall(r"^\.\. auto\w+:: ([\w.]+)", pages, re.MULTILINE)
+
+    assert entries
+    for entry in entries:
+        assert resolve_name(entry).__doc__, entry
 
 
 def test_the_table_of_parts_in_si_units_has_every_number_that_is_theirs() -> None:

@@ -17,34 +17,21 @@ version = release = version_of("frictionlab")
 
 extensions = [
     "myst_parser",
-    "sphinx.ext.autodoc",
-    "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
     "finished_pages",
 ]
-# the first two are for developers, read in the repository, the last is a part of a page
-exclude_patterns = ["architecture.md", "tests.md", "equivalence.md"]
+exclude_patterns = ["architecture.md", "tests.md"]  # for developers, read in the repository
+CONTENTS = {
+    "Start": ["start", "which", "ten_jobs", "gallery/index"],
+    "Use": ["study", "results", "needs", "fit", "write_a_law", "cost", "when_wrong"],
+    "Theory": ["theory/model", "theory/laws", "theory/means", "theory/theorems", "error_bounds", "stability"],
+    "Reference": ["nomenclature", "api", "api_scenes"],
+}
+"""Pages of the navigation; those of the gallery are the links of its first page."""
 
 myst_enable_extensions = ["dollarmath", "deflist", "attrs_block"]
 myst_heading_anchors = 4
 smartquotes_action = "De"  # no quotes: strings of Python are to be copied
-
-autodoc_typehints = "none"  # docstrings have them
-autodoc_member_order = "bysource"
-add_module_names = False
-napoleon_google_docstring = False
-napoleon_custom_sections = [("Attributes", "params_style")]
-napoleon_preprocess_types = True  # classes of frictionlab lead to their entry
-napoleon_type_aliases = {
-    name: f":class:`~frictionlab.{module}.{name}`"
-    for name, module in {
-        "DriftSpeed": "runner.steady_state",
-        "Equivalent": "analysis.fit.equivalent",
-        "FittedLaws": "analysis.fit.result",
-        "Needs": "analysis.needs.needs",
-        "Run": "report.run",
-    }.items()
-}
 
 html_theme = "furo"
 html_title = f"frictionlab {version}"
@@ -60,11 +47,16 @@ html_copy_source = False
 html_theme_options = {"footer_icons": []}
 
 
-def _show_absolute_values(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    """Escape the bars of ``|v|`` in a docstring, which would be a substitution."""
-    lines[:] = [re.sub(r"\|(\w+)\|", r"\|\1\|", line) for line in lines]
+def _add_contents(app: Any, page: str, source: list[str]) -> None:
+    """Append the lists that the navigation is made from: a reader of the file has the links."""
+    lists = CONTENTS if page == "index" else {}
+    if page == "gallery/index":
+        lists = {"Gallery": list(dict.fromkeys(re.findall(r"\]\(([\w./]+)\.md\)", source[0])))}
+    for caption, names in lists.items():
+        pages = "\n".join(names)
+        source[0] += f"\n```{{toctree}}\n:caption: {caption}\n:hidden:\n\n{pages}\n```\n"
 
 
 def setup(app: Any) -> None:
-    """Change docstrings before they are read."""
-    app.connect("autodoc-process-docstring", _show_absolute_values)
+    """Change pages as they are read."""
+    app.connect("source-read", _add_contents)

@@ -1,6 +1,6 @@
 """How near elastic friction under a prescribed slip comes to Coulomb friction of a body.
 
-Writes the two figures of docs/equivalence.md (python docs/equivalence_figures.py), in a minute or two.
+Writes the two figures of docs/dynamic_laws.md (python docs/equivalence_figures.py), in a minute or two.
 Distances are in shares of mu, at fifty belt speeds
 up to V_lin (the reverse at ten), from which on all curves are mu. The slip has the velocity amplitude V_lin and the
 displacement amplitude X; its curve depends on presliding length over X alone, and rises with it everywhere: what lies

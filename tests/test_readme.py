@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 from fnmatch import fnmatchcase
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -20,7 +21,7 @@ from frictionlab.values.validation import number_paths, value_paths
 
 PROJECT = Path(__file__).parent.parent
 README = (PROJECT / "README.md").read_text()
-DOCUMENTS = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").glob("*.md"))]
+DOCUMENTS = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").rglob("*.md"))]
 
 
 def _block(name: str) -> str:
@@ -92,12 +93,27 @@ def test_the_checks_can_be_run() -> None:
     assert (PROJECT / ".ci" / "run").stat().st_mode & 0o111
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
-def test_every_link_and_picture_of_a_document_leads_to_a_file(document: Path) -> None:
-    targets = re.findall(r"\]\(([^)#]+?)(?:#[^)]*)?\)", document.read_text())
-    local = [target for target in targets if not target.startswith("http")]
+@cache
+def _headings(document: Path) -> set[str]:
+    """Names by which code hosts find the headings of a document."""
+    words = re.findall(
+        r"^#+ (.*)",
+        re.sub(r"^```.*?^```", "", document.read_text(), flags=re.MULTILINE | re.DOTALL),
+        re.MULTILINE,
+    )
+    return {re.sub(r"[^\w\- ]", "", each.lower()).replace(" ", "-") for each in words}
 
-    assert [target for target in local if not (document.parent / target).is_file()] == []
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(PROJECT).as_posix())
+def test_every_link_and_picture_of_a_document_leads_to_a_file_and_a_heading(document: Path) -> None:
+    outside_code = re.sub(r"^```.*?^```|`[^`\n]*`", "", document.read_text(), flags=re.MULTILINE | re.DOTALL)
+    local = [
+        found for found in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", outside_code) if "//" not in found[0]
+    ]
+    targets = [((document.parent / file).resolve() if file else document, heading) for file, heading in local]
+
+    assert [file for file, _ in targets if not file.is_file()] == []
+    assert [(file.name, name) for file, name in targets if name and name not in _headings(file)] == []
 
 
 def test_the_readme_shows_a_picture() -> None:

@@ -1,6 +1,6 @@
 """Run the studies of the gallery and write its pages and figures: ``python docs/gallery/make.py [STUDY ...]``.
 
-A new study wants a page with its question, how to read it and what comes out, and a line ``- [](NAME.md)`` in a group
+A new study wants a page with its question, how to read it and what comes out, and a link ``[](NAME.md)`` in a group
 of ``index.md``. About fifteen minutes, and more for kernels on a machine that has none. The site shows what is kept.
 """
 
@@ -28,6 +28,8 @@ FOUND = {
     "dynamic_laws": "What dynamic laws change",
 }
 """Pages beside this folder, of what many studies found together."""
+ACROSS = 3
+"""Pictures in a row of the first page."""
 COMMAND = Path(sys.executable).parent / "frictionlab"
 
 
@@ -71,14 +73,14 @@ frictionlab run {self.study}
 
 runs [{self.name}.yaml]({study}):
 
-```{{literalinclude}} {study}
-:language: yaml
-```
+```yaml
+{(STUDIES.parent / self.study).read_text()}```
 """
 
-    def card(self) -> str:
-        """Its entry on the first page."""
-        return f"- [![{self.title}](figures/{self.name}.svg) {self.question}]({self.name}.md)\n"
+    @property
+    def picture(self) -> str:
+        """Its picture on the first page, which leads to its page."""
+        return f"[![{self.title}](figures/{self.name}.svg)]({self.name}.md)"
 
 
 def study_named(name: str) -> Path:
@@ -94,7 +96,7 @@ def exhibits() -> list[Exhibit]:
     return [
         Exhibit(group, name, yaml.load(study_named(name))["title"], **said_of(name))
         for group, inside in zip(groups[::2], groups[1::2], strict=True)
-        for name in re.findall(r"^- .*\]\((\w+)\.md\)$", inside, re.MULTILINE)
+        for name in re.findall(r"\]\((\w+)\.md\)", inside)
     ]
 
 
@@ -125,25 +127,26 @@ def make(exhibit: Exhibit) -> None:
 
 def index(shown: list[Exhibit]) -> str:
     """The first page: the pictures of each group, then what the other studies found."""
-    names = "\n".join([*(f"../{page}" for page in FOUND), *(exhibit.name for exhibit in shown)])
     found = ", ".join(f"[{title}](../{page}.md)" for page, title in FOUND.items())
     groups = {exhibit.group: [each for each in shown if each.group == exhibit.group] for exhibit in shown}
-    sections = [
-        f"## {group}\n\n{{.cards}}\n{''.join(map(Exhibit.card, inside))}" for group, inside in groups.items()
-    ]
+    sections = [f"## {group}\n\n{pictures(inside)}" for group, inside in groups.items()]
     return f"""# Gallery
 
 What have others computed? Each picture leads to a page with the answer and the study.
 `python docs/gallery/make.py` runs them all again. What many studies found together: {found}.
 
-```{{toctree}}
-:hidden:
-
-{names}
-```
-
 {chr(10).join(sections)}
 {more(shown)}"""
+
+
+def pictures(shown: Sequence[Exhibit]) -> str:
+    """A table of pictures, each above its question."""
+    rows = [shown[at : at + ACROSS] for at in range(0, len(shown), ACROSS)]
+    lines = ["|" + "   |" * ACROSS, "|" + "---|" * ACROSS]
+    for row in rows:
+        for cells in ([each.picture for each in row], [each.question for each in row]):
+            lines.append(f"| {' | '.join([*cells, *[''] * (ACROSS - len(row))])} |")
+    return "\n".join(lines) + "\n"
 
 
 def table_of(folder: str, left_out: Sequence[str] = ()) -> str:

@@ -422,6 +422,6 @@ def test_a_displayed_formula_is_what_the_code_computes(formula: Formula) -> None
 
 @pytest.mark.parametrize("page", FORMULAS)
 def test_every_labelled_formula_of_the_model_the_laws_and_the_means_is_checked(page: str) -> None:
-    shown = re.findall(r"^\$\$ \(([\w-]+)\)$", (PAGES / f"{page}.md").read_text(), re.MULTILINE)
+    shown = re.findall(r"^<!-- formula ([\w-]+) -->$", (PAGES / f"{page}.md").read_text(), re.MULTILINE)
 
     assert {each.label for each in FORMULAS[page]} == set(shown) - WITHOUT_A_NUMBER

@@ -80,7 +80,13 @@ def check_command(
         lines = [
             line
             for (name, entries), job in zip(planned, jobs, strict=True)
-            for line in _planned_lines(name, entries, job.study.units.get(BELT_SPEEDS[1]))
+            for line in [
+                *_planned_lines(name, entries, job.study.units.get(BELT_SPEEDS[1])),
+                *(
+                    f"  {first} and {second} are one law with these numbers: their curves are one line"
+                    for first, second in batch.laws_twice(job.study)
+                ),
+            ]
         ]
         print_result("\n".join([*lines, *_price_lines([entries for _, entries in planned], priced, busy)]))
 

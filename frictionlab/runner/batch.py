@@ -1,6 +1,6 @@
 """One study or a folder of them, read and checked as a whole before the first is run.
 
-The plan of a study: curves and points per law and method, refusals, models. Nothing is computed.
+The plan of a study: curves and points per law and method, refusals, models, laws that are one. Nothing is computed.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from itertools import combinations, product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -163,3 +164,39 @@ def _model(method: Method, scenes: Scenes, law: FrictionLaw, tolerance: float) -
     """Return the model that will compute the numbers, and why; the name of a method that makes no choice."""
     auto: Any = registry.method_class("auto")
     return str(auto.foreseen(method, scenes, law, tolerance)) if isinstance(method, auto) else method.name
+
+
+_SPEEDS = tuple(10.0 ** (0.5 * k) for k in range(-18, 19))
+"""Slip speeds at which laws are compared, in units of their scene."""
+_SHARES = tuple(sign * (1.0 - 0.5**k) for sign in (1.0, -1.0) for k in range(12))
+"""Deflections at which they are compared, over the largest: closer and closer to it, where bristles yield."""
+
+
+def laws_twice(study: Study) -> list[tuple[str, str]]:
+    """Return the labels of laws that are one law, the one that is listed first first."""
+    laws = {curve.law_label: curve.law for curve in reversed(list(study.foreseen().curves()))}
+    pairs = combinations(reversed(laws.items()), 2)
+    return [(label, other) for (label, law), (other, second) in pairs if are_one_law(law, second)]
+
+
+def are_one_law(one: Any, other: Any) -> bool:
+    """Check whether two laws agree in friction, and in the rate of a bristle, wherever tried.
+
+    Laws with several memories are not compared.
+    """
+    if one.memory_kind != other.memory_kind or one.memory_kind not in ("none", "bristle"):
+        return False
+    pairs = zip(_numbers(one, one), _numbers(other, one), strict=True)
+    return all(abs(a - b) <= 1e-12 * max(abs(a), abs(b)) for a, b in pairs)
+
+
+def _numbers(law: Any, sizes: Any) -> list[float]:
+    """Return numbers that two laws share if they are one; sizes: the law that says how large deflections are."""
+    found = [law.sliding_friction(speed) for speed in _SPEEDS]
+    if law.memory_kind == "none":
+        return [law.static_friction(), *found]
+    reach = sizes.largest_deflection()
+    for speed, share in product(_SPEEDS, _SHARES):
+        rate = law.rate(speed, share * reach)
+        found += [rate, law.friction(speed, share * reach, rate)]
+    return found

@@ -65,17 +65,21 @@ class Given:
 
     def slip(self) -> float:
         """A slip velocity on the line, twelve decades of it."""
-        return float(
-            self.draw("slip velocity", st.builds(lambda s, v: s * v, strategies.signs, strategies.speeds))
-        )
+        signed = st.builds(lambda s, v: s * v, strategies.signs, strategies.speeds)
+        return float(self.draw("slip velocity", signed))
 
-    def planar_slip(self) -> complex:
+    def planar_slip(self, name: str = "slip velocity") -> complex:
         """A slip velocity in the plane."""
-        return complex(
-            self.draw(
-                "slip velocity", st.builds(lambda v, t: v * t, strategies.speeds, strategies.directions)
-            )
-        )
+        turned = st.builds(lambda v, t: v * t, strategies.speeds, strategies.directions)
+        return complex(self.draw(name, turned))
+
+    def in_the_plane(self, law: FrictionLaw) -> bool:
+        """Draw whether the plane is asked about, where the law has a meaning there."""
+        return not no_plane(law) and bool(self.draw("in the plane", st.booleans()))
+
+    def motion(self, law: FrictionLaw, planar: bool = False) -> tuple[Any, ContactMemory]:
+        """A slip velocity and a memory that the law can have."""
+        return self.planar_slip() if planar else self.slip(), self.memory(law, planar)
 
     def memory(self, law: FrictionLaw, planar: bool = False) -> ContactMemory:
         """A memory that the law can have."""

@@ -494,6 +494,15 @@ def test_a_check_tells_curves_points_models_refusals_and_time_and_keeps_nothing(
     assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
 
 
+def test_a_check_tells_laws_that_are_one(frictionlab: Any) -> None:
+    dahl = {"kind": "dahl", "mu": 0.3, "presliding_length": 0.5}
+    lugre = {"kind": "lugre", "mu_kinetic": 0.3, "presliding_length": 0.5}
+    said = frictionlab("check", study(laws=[{"kind": "coulomb", "mu": 0.3}, dahl, lugre]))
+
+    assert said.out.count("are one law") == 1
+    assert "  dahl and lugre are one law with these numbers: their curves are one line\n" in said.out
+
+
 def test_a_check_in_json_is_a_record_per_law_and_method(frictionlab: Any) -> None:
     (first, second) = json.loads(frictionlab("check", study(methods=["fake", "auto"]), "--json").out)
 

@@ -438,7 +438,9 @@ def _how_sure(fit: FittedLaws) -> list[str]:
     if ratios:
         times = dict.fromkeys(f"{ratio:.2g}" for ratio in (min(ratios), max(ratios)))
         alike = correlation_length(best.raw)
-        samples = f": residuals are correlated over about {alike:.0f} samples, and AIC takes each for independent"
+        samples = (
+            f": residuals are correlated over about {alike:.0f} samples, and AIC takes each for independent"
+        )
         told.append(
             f"errors from {best.blocks.max() + 1} blocks ({best.blocks_from}) are {' to '.join(times)} times the "
             f"naive ones{samples if alike >= 1.5 else ''}"

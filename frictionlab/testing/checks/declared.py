@@ -6,7 +6,6 @@ import math
 from itertools import pairwise, product
 
 from hypothesis import assume
-from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
@@ -16,7 +15,6 @@ from frictionlab.testing.contact import (
     dot,
     has_direction,
     memory_after_slip,
-    no_plane,
     response,
     rounding_noise,
     stored_work,
@@ -72,10 +70,7 @@ def steepest_fall(one: Given) -> None:
 def monotone(one: Given) -> None:
     """Friction that is declared monotone never falls with more slip, rest included."""
     law = one.law_near_the_edge(lambda law: law.monotone())
-    v, w = (
-        one.planar_slip(),
-        one.draw("other slip velocity", st.builds(lambda s, t: s * t, speeds, directions)),
-    )
+    v, w = one.planar_slip(), one.planar_slip("other slip velocity")
     a, b = law.sliding_vector(v), law.sliding_vector(w)
     scale = (abs(a) + abs(b)) * (abs(v) + abs(w))
     one.require(
@@ -147,8 +142,7 @@ def _moved(memory: ContactMemory, rates: ContactMemory, step: float) -> ContactM
 def held_at_rest(one: Given) -> None:
     """A contact at rest keeps its deflection: one that creeps there has a smoothing width in it."""
     law = one.law()
-    one.slip()
-    memory = one.memory(law)
+    _, memory = one.motion(law)
     rate = response(law, 0.0, memory).rates[0]
     one.require(rate == 0.0, "the deflection moves at rest", rate=rate)
 
@@ -178,10 +172,9 @@ def not_smoothed(one: Given) -> None:
 def passivity(one: Given) -> None:
     """Friction that is declared passive takes as much work as its memory stores, however quick the slip."""
     law = one.law_near_the_edge(lambda law: law.passive())
-    planar = not no_plane(law) and one.draw("in the plane", st.booleans())
-    v = one.planar_slip() if planar else one.slip()
-    memories = [one.memory(law, planar)]
-    if not planar or has_direction(law):
+    v, memory = one.motion(law, one.in_the_plane(law))
+    memories = [memory]
+    if isinstance(v, float) or has_direction(law):
         memories += [memory_after_slip(law, v, share) for share in (1.0, 0.7, 0.3, -0.5)]
     for slip, memory in product((v, *(speed * v / abs(v) for speed in SLOW_TO_QUICK)), memories):
         lost, room = _lost(law, slip, memory)
@@ -259,9 +252,7 @@ def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
 def rate_independence(one: Given) -> None:
     """Memory that is declared to know only the path moves as many times faster as the slip does."""
     law = one.law(lambda law: law.rate_independent())
-    planar = not no_plane(law) and one.draw("in the plane", st.booleans())
-    v = one.planar_slip() if planar else one.slip()
-    memory = one.memory(law, planar)
+    v, memory = one.motion(law, one.in_the_plane(law))
     faster = one.draw("times faster", sizes(1e-3, 1e3))
     quick = response(law, faster * v, memory)
     got = quick._replace(rates=tuple(rate / faster for rate in quick.rates))
@@ -316,7 +307,7 @@ def _change_of_rate(
 def damps_across(one: Given) -> None:
     """Small motion across the slip only loses energy to friction where that is declared."""
     law = one.planar_law()
-    v, memory = one.slip(), one.memory(law)
+    v, memory = one.motion(law)
     assume(law.damps_across(abs(v)))
     for speed in (abs(v), *(10.0**exponent for exponent in range(-6, 7))):
         if law.damps_across(speed):

@@ -83,10 +83,7 @@ def _slowed_to(one: Given, law: BristleLaw, speed: float, share: float) -> float
 def exact_path(one: Given) -> None:
     """``deflected`` is what integrating the rate along a straight path gives."""
     law = one.law(lambda law: law.exact_path() and law.largest_rate(1.0) < math.inf)
-    planar = (
-        not law.no_vector_form() and law.planar == "vectorial" and one.draw("in the plane", st.booleans())
-    )
-    start, path = _start_and_path(one, law, planar)
+    start, path = _start_and_path(one, law)
     assume(law.largest_rate(1.0) * abs(path) < STEPS)  # steps longer than that find nothing
     got, should = law.deflected(start, path), _integrated(law, start, path)
     one.require(
@@ -97,8 +94,8 @@ def exact_path(one: Given) -> None:
     )
 
 
-def _start_and_path(one: Given, law: BristleLaw, planar: bool) -> tuple[Any, Any]:
-    size = deflection_scale(law)
+def _start_and_path(one: Given, law: BristleLaw) -> tuple[Any, Any]:
+    size, planar = deflection_scale(law), law.planar == "vectorial" and one.in_the_plane(law)
     way = one.draw("direction of the path", directions if planar else signs)
     path = size * one.draw("path over deflection", sizes(1e-2, 5.0)) * way
     return one.memory(law, planar)[0], path
@@ -132,10 +129,7 @@ def _room(law: BristleLaw, path: Any) -> float:
 def path_splitting(one: Given) -> None:
     """One straight path and its two parts, one after the other, end at the same deflection."""
     law = one.law(lambda law: law.exact_path())
-    planar = (
-        not law.no_vector_form() and law.planar == "vectorial" and one.draw("in the plane", st.booleans())
-    )
-    start, path = _start_and_path(one, law, planar)
+    start, path = _start_and_path(one, law)
     share = one.draw("share of the first part", evenly(0.01, 0.99))
     whole = law.deflected(start, path)
     parts = law.deflected(law.deflected(start, share * path), (1.0 - share) * path)
@@ -249,7 +243,7 @@ def breakaway(one: Given) -> None:
 def uncoupled(one: Given) -> None:
     """Rates depend on slip and on that number alone: steps are solved number by number."""
     law = one.law(lambda law: law.count() > 1)
-    v, memory = one.slip(), one.memory(law)
+    v, memory = one.motion(law)
     rates = response(law, v, memory).rates
     for k, rate in enumerate(rates):
         others = tuple(each if j == k else 0.3 * each for j, each in enumerate(memory))

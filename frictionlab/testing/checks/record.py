@@ -17,7 +17,7 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.study import registry
 from frictionlab.study.records import law_record
-from frictionlab.testing.contact import ContactMemory, Response, no_plane, response
+from frictionlab.testing.contact import ContactMemory, no_plane, response
 from frictionlab.testing.example import Given, law_check
 from frictionlab.testing.strategies import fullest_laws, loaded_laws, words
 
@@ -139,20 +139,18 @@ def _refused(law: type[FrictionLaw], given: dict[str, Any]) -> bool:
 def answers(one: Given) -> None:
     """Every method answers with a finite number: a float on the line, a complex number in the plane."""
     law = one.law()
-    v = one.slip()
-    memory = one.memory(law)
+    v, memory = one.motion(law)
     _number(one, float, law.sliding_friction(abs(v)), "sliding_friction")
-    _numbers(one, float, response(law, v, memory))
+    _numbers(one, law, v, memory)
     if not no_plane(law):
-        slip = one.planar_slip()
-        across = one.memory(law, planar=True)
-        _numbers(one, complex, response(law, slip, across), float if _scalars(law) else complex)
+        _numbers(one, law, *one.motion(law, planar=True))
 
 
-def _numbers(one: Given, kind: type, got: Response, of_memory: type | None = None) -> None:
-    _number(one, kind, got.friction, "friction")
+def _numbers(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory) -> None:
+    got = response(law, v, memory)
+    _number(one, type(v), got.friction, "friction")
     for rate in got.rates:
-        _number(one, of_memory or kind, rate, "rate")
+        _number(one, float if _scalars(law) else type(v), rate, "rate")
 
 
 def _number(one: Given, kind: type, value: Any, whose: str) -> None:
@@ -167,24 +165,21 @@ def _number(one: Given, kind: type, value: Any, whose: str) -> None:
 def extremes(one: Given) -> None:
     """At rest and at speeds of any size nothing divides by zero and nothing overflows."""
     law = one.law()
-    one.slip()
-    memory = one.memory(law)
+    _, memory = one.motion(law)
     for speed in (0.0, *EXTREMES):
         _number(one, float, law.sliding_friction(speed), f"sliding_friction at speed {speed:g}")
     # Without memory friction at rest is set-valued: nobody asks for it.
     for v in EXTREMES if isinstance(law, SlidingLaw) else (0.0, *EXTREMES):
-        _numbers(one, float, response(law, v, memory))
+        _numbers(one, law, v, memory)
         if not no_plane(law) and memory:
-            across = memory if _scalars(law) else tuple(map(complex, memory))
-            _numbers(one, complex, response(law, complex(v), across), float if _scalars(law) else complex)
+            _numbers(one, law, complex(v), memory if _scalars(law) else tuple(map(complex, memory)))
 
 
 @law_check(change="let the method depend on its arguments and the parameters alone", share=0.2)
 def repeatable(one: Given) -> None:
     """Asked the same again, later, a law answers the same: no chance, no clock, nothing kept between calls."""
     law = one.law()
-    v = one.slip()
-    memory = one.memory(law)
+    v, memory = one.motion(law)
     first = asked(law, v, memory)
     time.sleep(0.002)
     asked(law, -0.7 * v, tuple(0.3 * each for each in memory))
@@ -208,8 +203,7 @@ def _friction_alone(law: Any, v: float, memory: ContactMemory, rates: ContactMem
 def instances_apart(one: Given) -> None:
     """Calls of one law change nothing for another of the same parameters."""
     law = one.law()
-    v = one.slip()
-    memory = one.memory(law)
+    v, memory = one.motion(law)
     twin = type(law)(**law.model_dump(exclude_none=True))
     first = asked(law, v, memory)
     asked(one.draw("other law", loaded_laws(one.kind)), -2.0 * v, tuple(0.5 * each for each in memory))

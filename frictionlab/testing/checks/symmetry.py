@@ -56,8 +56,7 @@ def rotation(one: Given) -> None:
 def reflection(one: Given) -> None:
     """Mirror slip and memory about x1: friction must be mirrored."""
     law = one.planar_law()
-    v = one.planar_slip()
-    memory = one.memory(law, planar=True)
+    v, memory = one.motion(law, planar=True)
     there = response(law, v, memory)
     got = response(law, v.conjugate(), reflect(law, memory))
     should = Response(reflect(law, there.rates), there.friction.conjugate())
@@ -71,8 +70,7 @@ def reflection(one: Given) -> None:
 def straight_planar_slide(one: Given) -> None:
     """Slide along x1 in the plane: friction and rates must equal those on the line, with zero across."""
     law = one.planar_law()
-    v = one.slip()
-    memory = one.memory(law)
+    v, memory = one.motion(law)
     scalars = isinstance(law, MemoryLaw) and not has_direction(law)
     across = memory if scalars else tuple(map(complex, memory))
     got = response(law, complex(v, 0.0), across)
@@ -89,8 +87,7 @@ def unit_scaling(one: Given) -> None:
     Every parameter is converted by the dimension in its annotation.
     """
     law = one.law()
-    v = one.slip()
-    memory = one.memory(law)
+    v, memory = one.motion(law)
     scales = Units(
         one.draw("unit of length", sizes(1e-3, 1e3)), one.draw("unit of time", sizes(1e-3, 1e3)), 1.0
     )

@@ -20,10 +20,13 @@ from frictionlab.values.columns import (
     unit_shown,
     word,
 )
+from frictionlab.values.units import ShownUnit, handy_unit
 
 T = TypeVar("T")
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 LONGEST_LABEL, BESIDE = 36, 22  # letters of a name alone, and beside another name or a count
+PREFIXED, WITHOUT_PREFIX = ("N", "N/m", "N s/m", "m", "m/s", "J", "s"), (0.01, 1e4)
+"""Units that get a prefix, and sizes of numbers that do without."""
 EVEN, EVENER = 0.3, 3.0
 """Unevenness below which logarithms count as even: of 1, 2, 5, 10 it is 0.14, of chosen belt speeds 0.4 and more.
 Values over many decades that crowd somewhere count, too, if they are so much more uneven than their logarithms."""
@@ -43,9 +46,12 @@ class SweptValue(NamedTuple):
     @property
     def text(self) -> str:
         """Return the value alone, with its unit."""
-        if isinstance(self.value, str):
-            return shortened(self.value, LONGEST_LABEL)
-        return "" if self.value is None else f"{self.value:.5g} {unit_shown(self.name)}".rstrip()
+        if self.value is None or isinstance(self.value, str):
+            return shortened(self.value or "", LONGEST_LABEL)
+        unit, least, most = unit_shown(self.name), *WITHOUT_PREFIX
+        takes_one = unit in PREFIXED and not least <= abs(self.value) < most
+        shown = handy_unit(unit, abs(self.value)) if takes_one else ShownUnit(unit)
+        return f"{self.value / shown.size:.5g} {shown.unit}".rstrip()
 
     @property
     def brief(self) -> str:

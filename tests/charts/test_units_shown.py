@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import frictionlab as fl
 from frictionlab.charts.figures import FigureData, Kept, figures_of
 from frictionlab.charts.sheet import STYLE, write_heading
+from frictionlab.charts.sweeps import SweptValue
 from frictionlab.runner.summary import summary
 from frictionlab.runner.table import whole
 from frictionlab.values.units import handy_unit, in_shown_units
@@ -96,3 +97,21 @@ def test_a_title_too_long_for_its_picture_takes_several_lines() -> None:
     write_heading(axes, "load amplitude = 10 N, belt speed = 7.4 cm/s, law", 200.0)
 
     assert axes.get_title(loc="left") == "load amplitude = 10 N,\nbelt speed = 7.4 cm/s, law"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("scene.dimensional.transverse.stiffness_N_per_m", 4.737e7, "47.37 MN/m"),
+        ("scene.dimensional.transverse.stiffness_N_per_m", -3e5, "-300 kN/m"),
+        ("scene.dimensional.transverse.stiffness_N_per_m", 5.0, "5 N/m"),
+        ("scene.dimensional.transverse.stiffness_N_per_m", 0.0, "0 N/m"),
+        ("scene.dimensional.slip.displacement_amplitude_m", 3e-6, "3 µm"),
+        ("law.presliding_length in um", 3.0, "3 µm"),
+        ("scene.drive.frequency", 1e7, "1e+07"),
+    ],
+)
+def test_a_swept_number_in_si_units_has_a_prefix_where_it_needs_one(
+    name: str, value: float, told: str
+) -> None:
+    assert SweptValue(name, value).text == told

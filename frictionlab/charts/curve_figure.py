@@ -198,7 +198,10 @@ class _Picture:
             axes.plot([0.0, 0.5, 1.0], y[[0, 0, 0]], markevery=[1], transform=across, **look)
             return
         drawn = _with_kinks(x, y, curve.kinks if self.column == "mean_friction" and not self.of.level else ())
-        axes.plot(*drawn, markevery=self.of.looks.marked(drawn[1], curve), **look)
+        solved = np.isin(drawn[0], x)  # a kink is none of the points
+        axes.plot(
+            *drawn, markevery=[at for at in self.of.looks.marked(drawn[1], curve) if solved[at]], **look
+        )
         if self.column == "mean_friction":
             _draw_errors(axes, curve, x, look["color"])
         held = _sticks(curve) if self.of.options.stick else np.zeros(len(x), bool)

@@ -55,6 +55,7 @@ def _linear(color: Any) -> NDArray[np.float64]:
 MOST_BY_DASHES = 4  # methods that colour and dashes tell apart, without markers
 MARKERS = "os^Dvph<>d"
 MOST_VALUES_IN_LEGEND = 8
+MOST_DOTTED = 12  # points of a curve that all get a marker
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
 LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
 DARKEST, PALEST = 14.0, 3.2  # contrast against white of the ends of a swept number
@@ -112,10 +113,12 @@ class Looks:
         return CYCLE[place % len(CYCLE)]
 
     def marked(self, y: NDArray[np.float64], curve: CurveData) -> list[int]:
-        """Return the points that get a marker: some of a curve with neighbours, and all that no line reaches."""
+        """Return the points that get a marker: all of few, some of a long curve, and all that no line reaches."""
         known = np.isfinite(y)
         beside = np.pad(known, 1)
         marks = ~(beside[2:] | beside[:-2])
+        if not self._has_signs and known.sum() <= MOST_DOTTED:
+            return [*np.flatnonzero(known).tolist()]
         if self._has_signs and curve.place[1] in self.shown:
             first, step = self._stagger(len(y), curve)
             marks[first::step] = True

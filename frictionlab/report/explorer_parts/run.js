@@ -61,7 +61,9 @@ function curvesChosen() {
 /** The scenes of these curves that the page solves, each once; solved when first shown. */
 const solutions = new Map();
 function coulombCurves(curves) {
-  const keys = new Set(curves.filter((curve) => curve.coulomb).map(({ coulomb }) => JSON.stringify(coulomb)));
+  // Curves of one scene have its numbers to rounding.
+  const rounded = (_, value) => (typeof value === "number" ? Number(value.toPrecision(12)) : value);
+  const keys = new Set(curves.filter((curve) => curve.coulomb).map(({ coulomb }) => JSON.stringify(coulomb, rounded)));
   return [...keys].map((key) => {
     if (!solutions.has(key)) {
       const given = JSON.parse(key), scene = makeScene(given.frequency, given.damping, given.friction);

@@ -9,7 +9,7 @@ LIMITS = {
     "analysis": 2180,
     "bench": 2177,
     "beside the rooms": 87,
-    "charts": 1807,
+    "charts": 1806,
     "cli": 987,
     "compile": 1409,
     "curves": 843,
@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 841,
     "tools": 19,
     "values": 1427,
-    "tests": 26269,
+    "tests": 26274,
     "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

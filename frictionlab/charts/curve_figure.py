@@ -7,6 +7,7 @@ curves are one line are drawn once, and the legend says so.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -240,12 +241,11 @@ class _Picture:
 def _with_kinks(
     x: CurveNumbers, y: CurveNumbers, kinks: Sequence[float]
 ) -> tuple[CurveNumbers, CurveNumbers]:
-    """Points of a curve and, at V_lin, one of the level that it keeps from there on, where it keeps one."""
+    """Points of a curve and, at V_lin, one of the level that every point keeps from there on."""
     for kink in kinks:
-        beyond = x >= kink if kink > 0.0 else x <= kink
-        places = np.flatnonzero(beyond & np.isfinite(y))
-        level = float(y[places].mean()) if places.size else 0.0
-        if places.size and kink not in x and np.abs(y[places] - level).max() <= KEPT_LEVEL * abs(level):
+        places = np.flatnonzero(x >= kink if kink > 0.0 else x <= kink)
+        level = float(y[places].mean()) if places.size else math.nan
+        if math.isfinite(level) and kink not in x and np.abs(y[places] - level).max() <= KEPT_LEVEL * abs(level):
             at = int(np.searchsorted(x, kink))
             x, y = np.insert(x, at, kink), np.insert(y, at, level)
     return x, y

@@ -38,6 +38,8 @@ def test_the_citation_is_that_of_the_package() -> None:
         == f"{PACKAGE['name']}: {PACKAGE['description'][:1].lower()}{PACKAGE['description'][1:-1]}"
     )
     assert f"title = {{{cited['title']}}}" in itself(PACKAGE["version"]).bibtex
+    assert f"year = {{{cited['date-released'].year}}}" in itself(PACKAGE["version"]).bibtex
+    assert "year" not in itself("0.0.0").fields
     assert [cited["version"], cited["license"]] == [PACKAGE["version"], PACKAGE["license"]]
     assert [author["name"] for author in cited["authors"]] == [
         author["name"] for author in PACKAGE["authors"]

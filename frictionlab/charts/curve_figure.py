@@ -245,7 +245,11 @@ def _with_kinks(
     for kink in kinks:
         places = np.flatnonzero(x >= kink if kink > 0.0 else x <= kink)
         level = float(y[places].mean()) if places.size else math.nan
-        if math.isfinite(level) and kink not in x and np.abs(y[places] - level).max() <= KEPT_LEVEL * abs(level):
+        if (
+            math.isfinite(level)
+            and kink not in x
+            and np.abs(y[places] - level).max() <= KEPT_LEVEL * abs(level)
+        ):
             at = int(np.searchsorted(x, kink))
             x, y = np.insert(x, at, kink), np.insert(y, at, level)
     return x, y

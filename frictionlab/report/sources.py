@@ -19,6 +19,9 @@ from frictionlab.study import registry
 from frictionlab.study.bibliography import Publication, publications, unpublished_source
 from frictionlab.study.parts import LawChoice
 
+RELEASED = {"0.2.0": "2026"}
+"""Years of the versions that were released."""
+
 
 def bibtex(runs: Sequence[Results]) -> str:
     """Return one entry for each publication, under a comment that says what used it; keys differ."""
@@ -40,7 +43,7 @@ def itself(version: str) -> Publication:
         "author": "{The frictionlab authors}",
         "title": f"frictionlab: {summary[:1].lower()}{summary[1:].removesuffix('.')}",
         "note": f"Python package, version {version}",
-    }
+    } | ({"year": RELEASED[version]} if version in RELEASED else {})
     lines = "".join(f"  {name} = {{{value}}},\n" for name, value in fields.items())
     return Publication("misc", "frictionlab", fields, f"@misc{{frictionlab,\n{lines}}}")
 

@@ -89,8 +89,8 @@ def _count_if_any(which: pd.Series) -> str:
 
 
 def above_tolerance(run: Facts, rows: pd.DataFrame) -> pd.Series:
-    """Select rows that have a larger error than asked for; of a long-time mean none is asked."""
-    return (rows["error"] > run.saved.study.tolerance) & (rows["error_kind"] != "statistical")
+    """Select rows that have a larger error than asked for, whatever its kind."""
+    return rows["error"] > run.saved.study.tolerance
 
 
 def onset_grid(run: Facts) -> Grid:

@@ -274,6 +274,9 @@ ATTENTION: dict[str, list[pd.DataFrame]] = {
     f"{WELL}2 points ok.": ROUGH[1:],
     # errors above the tolerance and expectations that failed do
     BAD: [*ROUGH, curve("dahl", [0.1, 0.2], error=0.05)],
+    f"{NEEDS}errors up to 0.002 above the tolerance of 1e-08 at 2 points.": [
+        curve("coulomb", [0.1, 0.2], error=0.002, error_kind="statistical")
+    ],
     # points without an answer are told with whose they are, and with between what means lie
     f"{NEEDS}not unique at 2 of 2 points, with means from 0.1 to 0.25.": [SEVERAL],
     (

@@ -8,12 +8,14 @@ A page has a comment for each place, and ``<!-- end -->`` below what was written
 - ``<!-- file ../studies/first.yaml -->``: a file as it is.
 
 Pages of the gallery are written with the text of their studies; their pictures are those of ``docs/gallery/make.py``.
+The part of the first page about Python is written as a notebook, too.
 """
 
 from __future__ import annotations
 
 import importlib.util
 import inspect
+import json
 import re
 from functools import cached_property
 from pathlib import Path
@@ -180,8 +182,24 @@ def _homes() -> dict[str, str]:
     return _found
 
 
+def notebook(page: Path, heading: str) -> str:
+    """Part of a page as a notebook: its sentences and its programs, cell by cell."""
+    part = page.read_text().partition(f"## {heading}\n")[2].partition("\n## ")[0]
+    parts = re.split(r"^(?:<!-- .* -->\n)?```python\n(.*?)^```\n", part, flags=re.MULTILINE | re.DOTALL)
+    texts = [f"# {heading}\n\n{parts[0].strip()}", *(each.strip() for each in parts[1:])]
+    cells = [
+        {"cell_type": "code" if place % 2 else "markdown", "id": f"cell-{place}", "metadata": {}}
+        | ({"execution_count": None, "outputs": []} if place % 2 else {})
+        | {"source": text.splitlines(keepends=True)}
+        for place, text in enumerate(texts)
+    ]
+    python = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    book = {"cells": cells, "metadata": {"kernelspec": python}, "nbformat": 4, "nbformat_minor": 5}
+    return json.dumps(book, indent=1, ensure_ascii=False) + "\n"
+
+
 def pages() -> dict[Path, str]:
-    """Every page of this folder and of the gallery, with the text that it should have."""
+    """Every page of this folder and of the gallery, and the notebook, with the text that it should have."""
     spec = importlib.util.spec_from_file_location("gallery", DOCS / "gallery" / "make.py")
     assert spec is not None
     assert spec.loader is not None
@@ -189,6 +207,7 @@ def pages() -> dict[Path, str]:
     spec.loader.exec_module(gallery)
     shown = gallery.exhibits()
     texts = {page: written(page) for page in sorted([*DOCS.glob("*.md"), *DOCS.glob("theory/*.md")])}
+    texts[DOCS / "start.ipynb"] = notebook(DOCS / "start.md", "From Python")
     texts |= {DOCS / "gallery" / f"{each.name}.md": each.page() for each in shown}
     return texts | {DOCS / "gallery" / "index.md": gallery.index(shown)}
 

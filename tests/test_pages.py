@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import json
 import re
 import runpy
 from pathlib import Path
@@ -64,10 +65,16 @@ def test_the_study_in_si_units_of_the_first_page_is_one(tmp_path: Path) -> None:
     assert fast["mean_friction"].tolist() == pytest.approx([0.149, 0.180], abs=2e-3)  # half, and 0.18
 
 
-def test_the_python_of_the_first_page_runs() -> None:
-    table = _names(_block("start.md", "python"))["table"]
+def test_the_notebook_of_the_first_page_runs() -> None:
+    cells = json.loads((DOCS / "start.ipynb").read_text())["cells"]
+    names: dict[str, Any] = {}
+    for cell in cells:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), names)
 
-    assert list(table["status"]) == ["ok"] * 120  # type: ignore[index]
+    assert [cell["cell_type"] for cell in cells[:7]] == [*["markdown", "code"] * 3, "markdown"]
+    assert list(names["table"]["status"]) == ["ok"] * 120
+    assert set(names["found"].table["law"]) == {"coulomb", "dahl"}
 
 
 def test_the_programs_of_the_page_on_solvers_run_and_the_mean_is_proved() -> None:

@@ -24,7 +24,7 @@ LIMITS = {
     "theory": 841,
     "tools": 19,
     "values": 1427,
-    "tests": 26279,
+    "tests": 26285,
     "plugins": 3226,
 }
 """Lines of code that a room may have; a room that needs more takes them from another in the same commit."""

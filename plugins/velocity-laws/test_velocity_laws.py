@@ -185,6 +185,17 @@ def test_as_the_belt_slows_down_the_mean_vanishes_in_proportion(law):
 
 
 @deep("kernels of its own")
+def test_its_curve_starts_at_zero_though_its_friction_is_that_of_quick_slip_at_every_point():
+    law, speeds = Threlfall(mu=0.4, rise_speed=0.05), [0.1, 0.5, 1, 2, 3, 4, 5]
+
+    row = fl.compare(ALONG, law, belt_speed=speeds).curves.iloc[0]
+
+    assert {law.sliding_friction(speed) for speed in speeds} == {law.sliding_friction(1.0)}
+    assert row["shape_start"] == row["shape_start_error"] == 0.0
+    assert row["reversal_end_error"] > 0.01
+
+
+@deep("kernels of its own")
 def test_its_study_keeps_its_promises():
     done = fl.run(Path(__file__).parent / "study.yaml")
 

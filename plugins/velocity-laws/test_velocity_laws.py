@@ -196,6 +196,14 @@ def test_its_curve_starts_at_zero_though_its_friction_is_that_of_quick_slip_at_e
 
 
 @deep("kernels of its own")
+def test_without_vibration_the_mean_is_that_of_steady_sliding_none_below_free_speed():
+    for belt_speed, mean in ((0.01, 0.0), (0.175, 0.2), (1.0, 0.4)):
+        state = fl.steady_state(ALONG.with_(drive=None, belt_speed=belt_speed), AMBROSIO)
+        assert (state.status, state.stick_fraction) == ("ok", 0.0)
+        assert state.mean_friction == pytest.approx(mean, abs=1e-12)
+
+
+@deep("kernels of its own")
 def test_its_study_keeps_its_promises():
     done = fl.run(Path(__file__).parent / "study.yaml")
 

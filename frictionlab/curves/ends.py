@@ -107,7 +107,8 @@ class Loads(NamedTuple):
     rest if the law defines one, else NaN. prescribed: whether the slip is prescribed. shakedown: for bristles, their
     state on a belt of vanishing speed. unknown_start: why the start of the curve is not known, '' where it is.
     start: the mean friction at vanishing belt speed where that is known beforehand, else NaN. lags: whether the
-    friction of bristles lags behind the normal load. normal_load: its mean.
+    friction of bristles lags behind the normal load. normal_load: its mean. varying: whether the law may vary with
+    speed, even where steady sliding does not show it.
     """
 
     along: complex
@@ -120,6 +121,7 @@ class Loads(NamedTuple):
     start: float = math.nan
     lags: bool = False
     normal_load: float = math.nan
+    varying: bool = False
 
     @property
     def along_belt_only(self) -> bool:
@@ -167,7 +169,7 @@ def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Estimate, bool]:
     the last point with reversal or stick and the next. Raises UnreadableCurve.
     """
     ratio = rows.velocity_ratio[np.isfinite(rows.velocity_ratio) & (rows.velocity_ratio > 0.0)]
-    constant = rows.constant_friction and not loads.lags
+    constant = rows.constant_friction and not loads.lags and not loads.varying
     kinked = loads.along_belt_only and (constant or loads.prescribed)
     if ratio.size and (kinked or loads.prescribed):
         speed = float((rows.belt_speed / rows.velocity_ratio)[-1])
@@ -225,7 +227,8 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
     limit = kinetic if math.isnan(loads.static_limit) else max(kinetic, loads.static_limit)
     if limit <= loads.largest:
         return Estimate(0.0, 0.0)
-    if loads.along_belt_only and rows.constant_friction and limit <= kinetic * (1.0 + _SAME):
+    constant = rows.constant_friction and not loads.varying
+    if loads.along_belt_only and constant and limit <= kinetic * (1.0 + _SAME):
         steady = float(np.nanmedian(rows.steady))
         return Estimate(steady * (1.0 - loads.largest / limit), _ROUNDING * steady)
     raise UnreadableCurve(

@@ -85,6 +85,7 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
         # where forces are not told, in shares of the largest
         normal_load=(scene.normal_load or 0.0)
         / (1.0 if scene.is_harmonic else force_amplitude(scene) or math.nan),
+        varying=law is not None and not law.constant_sliding_friction(),
     )
 
 

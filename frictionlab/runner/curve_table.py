@@ -21,7 +21,7 @@ from frictionlab.curves.ends import (
     start_friction,
 )
 from frictionlab.curves.verdict import Estimate, FrictionCurve, Shape, UnreadableCurve, reduction, shape_of
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.runner.curve_loads import ONE_SIDED, loads_of, varies
 from frictionlab.runner.packing import WORDS
@@ -128,7 +128,7 @@ def loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
     static = value("law.mu_static") * value("scene.normal_load")
     slips = [value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip")]
     forces = force("scene.drive"), force("scene.transverse.load")
-    bristles = _bristle_law(given, laws)
+    bristles, law = _bristle_law(given, laws), _law(given, laws)
     shakedown = None if bristles is None else _shakedown(bristles, value, forces, any(slips))
     return Loads(
         *forces,
@@ -137,8 +137,15 @@ def loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
         any(slips),
         shakedown,
         _unknown_start(given, laws),
+        start=0.0 if law is not None and _never_sticks(law) else math.nan,
         normal_load=value("scene.normal_load"),
+        varying=law is not None and not law.constant_sliding_friction(),
     )
+
+
+def _never_sticks(law: FrictionLaw) -> bool:
+    """Check whether friction vanishes at rest, where a body then creeps."""
+    return isinstance(law, SlidingLaw) and law.vanishes_at_rest()
 
 
 def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:

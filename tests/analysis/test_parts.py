@@ -114,6 +114,23 @@ def test_what_the_friction_of_quick_sliding_leaves() -> None:
         without_fall(model(fl.Stribeck(mu_kinetic=0, mu_static=0.5)))
 
 
+class Peaked(fl.SlidingLaw):
+    """Friction that needs both coefficients."""
+
+    mu_kinetic: fl.Positive
+    mu_static: fl.Positive
+
+    def sliding_friction(self, speed: float) -> float:
+        return self.mu_kinetic + (self.mu_static - self.mu_kinetic) / (1.0 + speed)
+
+
+def test_a_law_that_must_have_static_friction_is_left_with_the_kinetic() -> None:
+    flat = without_fall(model(Peaked(mu_kinetic=0.3, mu_static=0.4)))
+
+    assert flat is not None
+    assert flat.law.sliding_friction(0.0) == flat.law.sliding_friction(2.0) == 0.3
+
+
 def test_bristles_on_the_friction_free_motion_have_their_slip_prescribed() -> None:
     full = model(
         DAHL,

@@ -382,6 +382,21 @@ def test_friction_above_the_load_starts_from_what_the_peak_of_the_load_leaves() 
     assert dense["reduction"] <= 0.625 + 1e-9
 
 
+@pytest.mark.parametrize("offset", [0.0, 1.0])
+def test_friction_that_falls_below_the_slowest_belt_speed_ends_no_reversal_at_v_lin(offset: float) -> None:
+    drive = fl.Drive(unbalance=10, frequency=1.5, offset=offset)
+    one, law = (
+        scene(1.5, 10.0).with_(drive=drive),
+        fl.Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.5),
+    )
+    speed = np.linspace(0.2, 1.2, 11) * friction_free_velocity(one)
+
+    row = curve_table(fl.curve(one, law, speed)).iloc[0]
+
+    assert {law.sliding_friction(each) for each in speed} == {0.3}
+    assert row["reversal_end_error"] > 0.01
+
+
 def test_friction_in_the_plane_above_both_loads_leaves_the_area_empty_and_says_why() -> None:
     row = curves(scene(0.5, 20.0, across=1.5), np.linspace(0.02, 2.5, 60))
 

@@ -144,14 +144,16 @@ def without_fall(model: LesserModel) -> LesserModel | None:
     """Friction at rest and in slow sliding no larger than in quick sliding (mu_kinetic, of Coulomb friction mu)."""
     law = model.law
     kinetic = law.mu if isinstance(law, Coulomb) else getattr(law, "mu_kinetic", None)
+    field = type(law).model_fields.get("mu_static")
     static = getattr(law, "mu_static", None)
-    if kinetic is None or static in (None, kinetic):
+    if field is None or kinetic is None or static in (None, kinetic):
         return None
     if kinetic == 0.0:
         raise CannotGo(NO_FRICTION)
     if isinstance(law, Stribeck):
         return model.with_law(_flat(kinetic, law.viscosity))
-    return model.with_law(law.model_copy(update={"mu_static": None}))
+    left = None if field.default is None else kinetic
+    return model.with_law(law.model_copy(update={"mu_static": left}))
 
 
 def without_viscosity(model: LesserModel) -> LesserModel | None:

@@ -465,9 +465,10 @@ class Passages:
                 at = 0.5 * (low + high)
 
     def _friction_off_sliding(self, track: Track) -> float:
-        """Return the largest distance of friction from that of sliding, over it."""
-        friction = -track.friction.real[: track.filled[0]]
-        return float(np.abs(friction / self.path.sliding_friction - 1.0).max())
+        """Return the largest distance of friction from that of sliding, over it unless it is zero."""
+        friction, sliding = -track.friction.real[: track.filled[0]], self.path.sliding_friction
+        off = float(np.abs(friction - sliding).max())
+        return off / abs(sliding) if sliding else math.inf if off else 0.0
 
     def _stays(self, before: Floats, after: Floats) -> bool:
         """Check that a motion ends in steady sliding: it nears it, and is so near that friction is linear."""

@@ -16,7 +16,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.piecewise import piecewise
-from frictionlab.theory.rest import friction_at_rest
+from frictionlab.theory.rest import friction_at_rest, size_of_friction
 from frictionlab.values.quantities import Floats
 
 _LEAST = 1e-12
@@ -62,7 +62,7 @@ class CurveMotions:
         self.looks = 0
         # a film that holds nothing at rest never sticks; its friction is measured by that of slip
         self.limit = friction_at_rest(law) or _NOTHING
-        self.friction = friction_at_rest(law) or law.sliding_friction(1.0)
+        self.friction = size_of_friction(scene, law)
         self.scale = velocity_scale(scene)
         if not math.isfinite(self.scale) or self.scale == 0.0:
             self.scale = 1.0

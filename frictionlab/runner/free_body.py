@@ -18,7 +18,7 @@ from frictionlab.runner.pieces import Chunk
 from frictionlab.scene.free_body import WEIGHTS_OF_SPRINGS, by_new_events, held, springs_for, without_spring
 from frictionlab.scene.units import Units, measured
 from frictionlab.study.registry import method_class
-from frictionlab.theory.rest import friction_at_rest
+from frictionlab.theory.rest import size_of_friction
 from frictionlab.values.columns import ALSO_IN_SI, COLUMNS
 from frictionlab.values.quantities import Floats
 
@@ -74,7 +74,7 @@ def _limit_of_springs(chunk: Chunk, solve: Callable[[Chunk], Part]) -> Part:
     parts = [part for part, _ in found]
     text = {name: list(words) for name, words in parts[-1].text.items()}
     numbers = limit_of_columns([(part.numbers, units) for part, units in found])
-    limit = friction_at_rest(chunk.law) or chunk.law.sliding_friction(1.0)
+    limit = size_of_friction(chunk.scenes.scene, chunk.law)
     numbers["error"] = numbers["error"] + limit * by_new_events(chunk.law.memory_kind != "none")
     for i in range(len(chunk)):
         _judge(i, parts, text, numbers, chunk)

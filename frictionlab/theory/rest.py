@@ -35,6 +35,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.body import one_harmonic_motions
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal, highest
+from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.piecewise import PieceNumbers, piecewise
 from frictionlab.values.quantities import Floats
 
@@ -48,6 +49,12 @@ def friction_at_rest(law: Any) -> float:
         return float(law.static_friction())
     at_rest: float = law.sliding_friction(0.0)
     return at_rest or float(law.sliding_friction(CREEP))  # a law that is zero at rest: take slow slip
+
+
+def size_of_friction(scene: Scene, law: FrictionLaw) -> float:
+    """Return the friction coefficient that errors are measured by: that at rest, else that of quick slip, above 0."""
+    scale = velocity_scale(scene)
+    return friction_at_rest(law) or law.sliding_friction(scale if 0.0 < scale < math.inf else 1.0) or 1.0
 
 
 def can_hold(scene: Scene, law: FrictionLaw) -> bool:

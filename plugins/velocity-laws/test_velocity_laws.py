@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from brown_mcphee import BrownMcphee
 from makkar import Makkar
 from periodic_mean import mean_by_integration
 from profiles import deep, some
+from scipy.integrate import quad
 from threlfall import Threlfall
 
 import frictionlab as fl
@@ -153,6 +155,8 @@ def test_methods_of_constant_friction_refuse_it_and_say_why(law):
         state = fl.steady_state(ALONG, law, method=method)
         assert state.status == "refused"
         assert "needs friction that does not vary with speed" in state.reason
+    more = fl.HarmonicBalance(harmonics=3)
+    assert (more.refusal(ALONG, law) is None) == ("harmonics: 3 or more take it" in state.reason)
 
 
 @some(1, "kernels of its own")
@@ -173,6 +177,35 @@ def test_in_the_plane_its_mean_is_that_of_an_independent_integration(law):
 
     assert state.mean_friction == pytest.approx(mean_by_integration(scene, law.sliding_friction), rel=1e-8)
     assert state.status == "ok"
+
+
+@pytest.mark.parametrize(
+    ("law", "corners"), [(Threlfall(mu=0.4, rise_speed=1), [1]), (AMBROSIO, [0.05, 0.3])]
+)
+@pytest.mark.parametrize("belt_speed", [0.1, 1.0, 2.2, 3.2])
+def test_under_a_prescribed_slip_its_mean_is_that_between_corners(law, corners, belt_speed):
+    def friction(angle):
+        slip = 3 * math.sin(angle) - belt_speed
+        return -math.copysign(law.sliding_friction(abs(slip)), slip)
+
+    shares = [(belt_speed + side * corner) / 3 for corner in [0, *corners] for side in (1, -1)]
+    turns = [math.asin(share) for share in shares if abs(share) < 1]
+    edges = sorted([0, math.tau, *(each % math.tau for turn in turns for each in (turn, math.pi - turn))])
+    parts = [quad(friction, *pair, epsabs=1e-14, epsrel=1e-13)[0] for pair in pairwise(edges)]
+    scene = fl.Scene(belt_speed=belt_speed, slip=fl.Slip(velocity_amplitude=3, frequency=1))
+
+    state = fl.steady_state(scene, law)
+
+    assert (state.status, state.mean_friction) == ("ok", pytest.approx(sum(parts) / math.tau, abs=1e-13))
+    assert state.error < 1e-12
+
+
+def test_friction_that_is_zero_at_the_speed_of_a_measure_has_one_elsewhere():
+    scene = ALONG.with_(drive=fl.Drive(amplitude=10, frequency=1.5))
+    law = Ambrosio(mu=0.4, free_speed=3, full_speed=5)
+
+    assert fl.steady_state(scene, law, method=fl.March(stepper="smoothed")).status == "ok"
+    assert fl.needs(scene, law, belt_speed=[0.1, 1, 3]).smallest is not None
 
 
 @deep("kernels of its own")

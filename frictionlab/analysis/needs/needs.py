@@ -30,6 +30,7 @@ from frictionlab.study.axes import FRICTION
 from frictionlab.study.grid import StudyCurve, law_in_scene
 from frictionlab.study.parts import coefficient_of
 from frictionlab.study.study import Study
+from frictionlab.theory.rest import size_of_friction
 from frictionlab.values.columns import BELT_SPEEDS, NEEDS
 from frictionlab.values.notes import Mistake, StudyError
 from frictionlab.values.printable import with_error
@@ -355,7 +356,8 @@ def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _As
     units = None if si is None else GivenUnits(si.scales, asked.speed or ShownUnit("m/s"))
     full = LesserModel(scene.model_copy(update={"dimensional": None}), law_in_scene(law, scene))
     quickest = float(np.abs(scenes.belt_speeds).max())
-    tolerance = USUAL_SHARE * full.law.sliding_friction(quickest) if within is None else within
+    usual = full.law.sliding_friction(quickest) or size_of_friction(full.scene, full.law)
+    tolerance = USUAL_SHARE * usual if within is None else within
     curves = Curves(scenes, ANSWERS_FINER * tolerance, asked.kinds, asked.seconds_per_point)
     answers = curves.of(full)
     if not (answers["status"] == "ok").any():

@@ -23,6 +23,7 @@ from frictionlab.motion.orbit.read import read_columns
 from frictionlab.motion.orbit.record import Orbit
 from frictionlab.motion.orbit.recorder import orbit_at_one_place
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import size_of_friction
 
 FIRST_STEPS = 64
 """Steps per period to begin with, where ``steps`` is left out."""
@@ -162,7 +163,10 @@ class Runs:
     def _by_width(self) -> None:
         """Run friction smoothed over this width."""
         plan, mass = self.plan, self.march.mass
-        load = mass.normal_load * self.march.law.sliding_friction(plan.width)
+        friction = self.march.law.sliding_friction(plan.width) or size_of_friction(
+            self.march.scene, self.march.law
+        )
+        load = mass.normal_load * friction
         accuracy = max(min(1e-5 * self.tolerance * load, 1e-3 * plan.width, 1e-6 * load), 1e-13 * load)
         pace = Resolution(
             width=plan.width,

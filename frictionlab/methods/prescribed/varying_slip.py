@@ -26,8 +26,9 @@ from frictionlab.values.quantities import EPSILON, Floats
 NO_SLIP = "the slip rests for a part of the period: friction there is any value up to mu"
 WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
-HALVINGS, MOST_PANELS, SAME_MEAN = 6, 4000, 1e-14
-"""Most halvings of panels, most panels, and the share of friction that halving may change."""
+HALVINGS, MOST_PANELS, SAME_MEAN = 50, 4000, 1e-14
+"""Most halvings of a panel, as about a corner of the law; most panels at once; the share of friction that halving
+all of them may change."""
 _CLOSEST = EPSILON
 """Half width of the panels, in shares of the period, at which the refinement towards rest ends: narrower ones have no
 middle at the end of the period."""
@@ -212,29 +213,35 @@ class VaryingPoint:
         """
         first = self.law.sliding_friction(0.0) if turns is not None else 0.0
         edges, k = self.slip.panels(self.belt_speed)
-        coarse, _ = self._mean(edges, k, first)
-        for _ in range(HALVINGS):
-            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])]))
-            k = np.repeat(k, 2)
-            fine, largest = self._mean(edges, k, first)
-            changed, coarse = abs(fine - coarse), fine
-            if changed <= SAME_MEAN * largest or len(k) > MOST_PANELS:
+        panels = np.stack([edges[:-1], edges[1:]], axis=1)
+        whole, largest = self._means(panels, k, first)
+        enough, mean, error = SAME_MEAN * largest / len(k), 0j, 64.0 * EPSILON * largest
+        for left in reversed(range(HALVINGS)):
+            middle = 0.5 * panels.sum(axis=1)
+            halves = np.stack([panels[:, 0], middle, middle, panels[:, 1]], axis=1).reshape(-1, 2)
+            parts, highest = self._means(halves, np.repeat(k, 2), first)
+            largest, parts = max(largest, highest), parts.reshape(-1, 2)
+            changed = np.abs(parts.sum(axis=1) - whole)
+            done = changed <= (enough if left and len(k) < MOST_PANELS else math.inf)
+            mean, error = mean + complex(parts[done].sum()), error + 4.0 * float(changed[done].sum())
+            panels, k, whole = halves[np.repeat(~done, 2)], np.repeat(k[~done], 2), parts[~done].ravel()
+            if not len(k):
                 break
-        error = 4.0 * changed + 64.0 * EPSILON * largest
         if turns is None:
-            return fine, error
-        return fine + first * turns.mean, error + first * turns.error
+            return mean, error
+        return mean + first * turns.mean, error + first * turns.error
 
-    def _mean(self, edges: Floats, k: PieceNumbers, less: float) -> tuple[complex, float]:
-        """Return the mean of friction less a constant coefficient, and the largest friction met."""
-        tau, weights = nodes(edges)
+    def _means(self, panels: Floats, k: PieceNumbers, less: float) -> tuple[Vectors, float]:
+        """Return shares of panels in the mean of friction less a constant coefficient, and the largest friction."""
+        half = 0.5 * np.diff(panels, axis=1)
+        tau, weights = panels[:, :1] + half * (1.0 + NODES), half * WEIGHTS
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
         friction = load * sliding_vectors(self.law, slip)
         largest = float(np.abs(friction).max())
         if less:
             friction = friction - load * less * _directions(slip)
-        return -complex((weights * friction).sum()) / self.slip.along.period, largest
+        return -(weights * friction).sum(axis=1) / self.slip.along.period, largest
 
     def _left_open(self, mean: float, spread: float) -> PrescribedMean:
         self.status, self.error_kind, self.reason = "not_unique", "", NO_SLIP

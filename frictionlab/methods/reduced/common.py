@@ -24,7 +24,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.one_harmonic import equivalent_drive
-from frictionlab.theory.rest import falls_slowly
+from frictionlab.theory.rest import falls_slowly, size_of_friction
 from frictionlab.values.quantities import Floats
 
 ROUNDING = 1e-10
@@ -134,7 +134,7 @@ def full_means(scene: Scene, law: FrictionLaw, belt_speeds: Floats) -> Answers:
 def full_answers(scenes: Sequence[Scene], law: FrictionLaw) -> Answers:
     """Answer scenes that differ in belt speed alone by the exact method where it takes them, else by shooting."""
     method = Exact() if not any(Exact().refusals(scenes, law)) else Shooting()
-    return method.solve(scenes, law, TOLERANCE * law.sliding_friction(1.0))
+    return method.solve(scenes, law, TOLERANCE * size_of_friction(scenes[0], law))
 
 
 def _carried(scene: Scene, orbit: Orbit | None) -> Orbit | None:

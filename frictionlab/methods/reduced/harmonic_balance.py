@@ -107,9 +107,11 @@ class HarmonicBalance(OfOneModel):
             return f"{self.name} needs a drive: it starts from the driven motion"
         if isinstance(law, BristleLaw):
             return bristle_refusal(self.name, steady, law) if self.harmonics == 1 else ONE_FOR_BRISTLES
-        if self.harmonics == 1:
-            return line_refusal(self.name, steady, law)
-        return sampled_refusal(self.name, steady, law, self.harmonics)
+        if self.harmonics > 1:
+            return sampled_refusal(self.name, steady, law, self.harmonics)
+        refused = line_refusal(self.name, steady, law)
+        takes_more = refused and sampled_refusal(self.name, steady, law, 3) is None
+        return f"{refused}; harmonics: 3 or more take it" if takes_more else refused
 
     def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         """Return the harmonics that balance."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from rate_and_state import RateAndState
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.analysis.fit.errors import correlation_length
+from frictionlab.analysis.fit.errors import correlation_length, covariances
 from frictionlab.analysis.fit.measured import WrongData, given_measurements
 from frictionlab.analysis.fit.result import PARTS_OF_A_FIT, FittedLaw
 from frictionlab.study.load import parse_study
@@ -90,6 +91,19 @@ def test_blocks_cover_where_noise_is_correlated_and_naive_errors_do_not() -> Non
         naive += off <= 1.96 * found.naive_errors["mu"]
     assert by_blocks >= 10
     assert naive <= 7
+
+
+@pytest.mark.parametrize("deciding", [4, 30])
+def test_intervals_cover_however_few_rows_decide_a_number(deciding: int) -> None:
+    rng, slopes = np.random.default_rng(3), np.full((30, 1), 0.05)
+    slopes[:deciding] = 1.0
+    held = 0
+    for noise in rng.standard_normal((2000, 30)):
+        off = float(slopes[:, 0] @ noise / (slopes**2).sum())
+        found = covariances(slopes, noise - slopes[:, 0] * off, np.arange(30), False)
+        held += abs(off) <= found.quantile[0] * math.sqrt(found.by_blocks[0, 0])
+
+    assert 0.93 < held / 2000 < 0.99
 
 
 def test_stated_errors_weigh_rows() -> None:

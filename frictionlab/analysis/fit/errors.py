@@ -33,7 +33,8 @@ def blocks_of(measured: Measurements, residuals: Floats) -> tuple[NDArray[np.int
     if measured.is_path and (cycles := _cycles(measured)) is not None:
         return cycles, "cycles of the slip"
     order = np.argsort(measured.table[measured.along].to_numpy(dtype=float), kind="stable")
-    length = TIMES_AS_LONG * correlation_length(residuals[order])
+    length = correlation_length(residuals[order])
+    length = TIMES_AS_LONG * length if length > 1.0 else 1.0
     most = MOST if measured.is_path else len(residuals)
     count = int(np.clip(len(residuals) / length, min(FEWEST, len(residuals)), most))
     cut = np.empty(len(residuals), np.int64)
@@ -89,13 +90,14 @@ UNSEEN = 1e-10
 class Covariances:
     """Covariances of the shares of the ranges. naive: of independent residuals of one size; by_blocks: by jackknife.
 
-    scale: variance of a residual over its stated one; quantile: standard errors of a two-sided interval of ``LEVEL``.
+    scale: variance of a residual over its stated one. quantile: of each number, standard errors of a two-sided
+    interval of ``LEVEL``, by Student's distribution for as many blocks as decide it (Satterthwaite, 1946).
     """
 
     naive: Floats
     by_blocks: Floats
     scale: float
-    quantile: float
+    quantile: Floats
 
     @property
     def inflation(self) -> Floats:
@@ -125,4 +127,10 @@ def covariances(slopes: Floats, residuals: Floats, blocks: NDArray[np.int64], st
     whole = np.diag(np.where(seen, 0.0, variances))
     whole[np.ix_(seen, seen)] = scatter
     naive, by_blocks = ways @ np.diag(variances) @ ways.T, ways @ whole @ ways.T
-    return Covariances(naive, by_blocks, scale, float(t.ppf(0.5 + 0.5 * LEVEL, max(number - 1, 1))))
+    pull = own / sizes[seen] @ ways[:, seen].T  # of each residual on each number
+    shares = np.array([(pull[rows] ** 2).sum(axis=0) for rows in parts])
+    squares = (shares**2).sum(axis=0)
+    deciding = np.divide(
+        shares.sum(axis=0) ** 2, squares, out=np.full(size, float(number)), where=squares > 0.0
+    )
+    return Covariances(naive, by_blocks, scale, t.ppf(0.5 + 0.5 * LEVEL, np.maximum(deciding - 1.0, 1.0)))

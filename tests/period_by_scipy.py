@@ -38,7 +38,7 @@ def mean_over_period(rates: Rates, size: int, period: float, kinks: Sequence[Kin
         state, _mean = _turn(rates, state, period, kinks)
     for _ in range(8):
         end, mean = _turn(rates, state, period, kinks)
-        if np.abs(end - state).max() < 1e-11:
+        if np.abs(end - state).max() < 1e-10:
             return mean
         state = state - np.linalg.solve(_changes(rates, state, period, kinks) - np.eye(size), end - state)
     raise AssertionError(f"no periodic state: {np.abs(end - state).max():g} left")

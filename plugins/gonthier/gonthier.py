@@ -49,7 +49,7 @@ class Gonthier(MemoryLaw):
     """
 
     bibtex: ClassVar[str] = """
-    @article{gonthier2004, author = {Gonthier, Y. and McPhee, J. and Lange, C. and Piedb{\\oe}uf, J.-C.}, title = {A
+    @article{gonthier2004, author = {Gonthier, Y. and McPhee, J. and Lange, C. and Piedboeuf, J.-C.}, title = {A
       regularized contact model with asymmetric damping and dwell-time dependent friction}, journal = {Multibody
       System Dynamics}, volume = {11}, pages = {209--233}, year = {2004}}
     """

@@ -23,8 +23,9 @@ class Gonthier(MemoryLaw):
     no longer than mu_kinetic + (mu_static - mu_kinetic) dwell.
 
     The source smooths v/|v| at low speed; here it is exact, as 1 - s vanishes at rest. Slip that stays far below
-    stribeck_speed bends the bristle without bound, though friction keeps its limit. Second in the memory is the dwell
-    times ``length``: it does not turn with the slip, which two checks of the battery ask of every deflection.
+    stribeck_speed bends the bristle without bound, though friction keeps its limit. Second in the memory is
+    ``length`` times 1 + dwell, which has a size in quick sliding, too. It does not turn with the slip: two
+    checks of the battery ask that of every deflection.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ class Gonthier(MemoryLaw):
 
     @property
     def length(self) -> float:
-        """Deflection of a bristle that slides quickly, which also is that kept for a whole dwell [scene length]."""
+        """Deflection of a bristle that slides quickly; also the unit in which the dwell is kept [scene length]."""
         return self.mu_kinetic / self.stiffness
 
     def count(self) -> int:
@@ -102,7 +103,7 @@ class Gonthier(MemoryLaw):
         speed = abs(v)
         slides = -math.expm1(-((speed / self.stribeck_speed) ** 2))
         if k == 1:
-            missing = (1.0 - slides) * self.length - memory[1]
+            missing = (2.0 - slides) * self.length - memory[1]
             return missing / (self.dwell_time if missing.real >= 0.0 else self.bristle_time)
         if speed == 0.0:
             return 0.0 * v
@@ -114,14 +115,23 @@ class Gonthier(MemoryLaw):
         speed = abs(v)
         slides = -math.expm1(-((speed / self.stribeck_speed) ** 2))
         if k == 1:
-            return (1.0 - slides) * self.length + 0.0 * v
+            return (2.0 - slides) * self.length + 0.0 * v
         drawn = self.bristle_damping * (1.0 - slides) / max(slides, 1e-300)
         return ((self.mu_kinetic / speed + drawn) / self.stiffness) * v
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Compute the force of the bristle, up to its limit, and viscosity."""
-        force = self.stiffness * memory[0] + self.bristle_damping * rates[0]
-        limit = self.mu_kinetic + (self.mu_static - self.mu_kinetic) * memory[1].real / self.length
+        """Compute the force of the bristle, up to its limit, and viscosity.
+
+        It is, with z' put in, s (stiffness z + bristle_damping v) + (1 - s) mu_kinetic v/|v|.
+        """
+        speed = abs(v)
+        stick = math.exp(-((speed / self.stribeck_speed) ** 2))
+        slides = -math.expm1(-((speed / self.stribeck_speed) ** 2))
+        force = stick * (self.stiffness * memory[0] + self.bristle_damping * v)
+        if speed > 0.0:
+            force = force + (slides * self.mu_kinetic / speed) * v
+        dwell = max(0.0, memory[1].real / self.length - 1.0)
+        limit = self.mu_kinetic + (self.mu_static - self.mu_kinetic) * dwell
         size = abs(force)
         if size > limit:
             force = (limit / size) * force

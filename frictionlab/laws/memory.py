@@ -394,7 +394,7 @@ class MemoryLaw(FrictionLaw, ABC):
         float or complex
             Memory [its unit]; zero if the law does not define it.
         """
-        return 0.0 * v
+        return 0.0  # and not 0*v: scalars are real in the plane, too
 
     def presliding(self) -> float:
         """Return the shortest deflection in steady sliding.

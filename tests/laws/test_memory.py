@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -46,6 +46,47 @@ def test_a_law_with_memory_is_the_same_interpreted_and_compiled(law: MemoryLaw, 
     for own in (compiled(read, law), KernelCall(read, law)):
         assert own(v, memory, compiled_rates) == pytest.approx(known, rel=1e-13)
         assert compiled_rates == pytest.approx(rates, rel=1e-13)
+
+
+class Dwelling(MemoryLaw):
+    """A scalar that slip renews, of which nothing is told but its rate."""
+
+    memory_kind: ClassVar[Literal["deflections", "scalars"]] = "scalars"
+
+    def sliding_friction(self, speed: float) -> float:
+        """At every speed."""
+        return 0.3
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Return 1, less what slip renews."""
+        return 1.0 - abs(v) * memory[k]
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """More after a dwell."""
+        return (0.3 + 0.1 * memory[0]) * v
+
+
+class Drawn(Dwelling):
+    """A deflection of which no more is told."""
+
+    memory_kind: ClassVar[Literal["deflections", "scalars"]] = "deflections"
+
+
+@some(1, "kernels of its own")
+@pytest.mark.parametrize(
+    ("law", "memory"),
+    [(Drawn(), np.array([0.02 + 0.01j])), (Dwelling(), np.array([0.02]))],
+    ids=["deflection", "scalar"],
+)
+def test_a_memory_whose_steady_value_is_not_told_is_compiled_in_the_plane(
+    law: MemoryLaw, memory: Any
+) -> None:
+    v, rates, compiled_rates = 0.3 + 0.4j, np.empty_like(memory), np.empty_like(memory)
+
+    known = read.py_func(law, v, memory, rates)
+
+    assert KernelCall(read, law)(v, memory, compiled_rates) == pytest.approx(known, rel=1e-13)
+    assert compiled_rates == pytest.approx(rates, rel=1e-13)
 
 
 def test_elements_of_every_number_run_in_a_kernel_of_their_own() -> None:

@@ -1,0 +1,11 @@
+"""Law passes what any law must: the whole battery, some minutes."""
+
+from bliman_sorine import BlimanSorine
+from profiles import deep
+
+from frictionlab.testing import check_law
+
+
+@deep("the whole battery takes minutes")
+def test_the_law_conforms():
+    check_law(BlimanSorine)

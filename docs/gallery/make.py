@@ -26,6 +26,7 @@ FOUND = {
     "atlas": "Where friction curves are concave",
     "rivals": "Who else makes a concave curve",
     "dynamic_laws": "What dynamic laws change",
+    "reviews": "Which law of friction changes the curve",
 }
 """Pages beside this folder, of what many studies found together."""
 ACROSS = 3

@@ -43,6 +43,7 @@ class BoucWen(CompliantLaw):
       hysteretic systems under bi-directional ground motions}, journal = {Earthquake Engineering and Structural
       Dynamics}, volume = {14}, pages = {543--557}, year = {1986}}
     """
+    in_words: ClassVar[str] = "Bouc-Wen"
 
     mu: Positive
     exponent: Exponent = 1.0

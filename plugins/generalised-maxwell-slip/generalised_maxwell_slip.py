@@ -43,6 +43,7 @@ class GeneralisedMaxwellSlip(MemoryLaw):
       {Maxwell}-slip model: a novel model for friction simulation and compensation}, journal = {IEEE Transactions on
       Automatic Control}, volume = {50}, pages = {1883--1887}, year = {2005}}
     """
+    in_words: ClassVar[str] = "Generalised Maxwell-slip"
 
     share: Annotated[tuple[Positive, ...], Field(min_length=1)]
     stiffness: Annotated[tuple[Stiffness, ...], Field(min_length=1)]

@@ -33,6 +33,7 @@ class MaxwellSlip(MemoryLaw):
       {Maxwell}-slip model: a novel model for friction simulation and compensation}, journal = {IEEE Transactions on
       Automatic Control}, volume = {50}, pages = {1883--1887}, year = {2005}}
     """
+    in_words: ClassVar[str] = "Maxwell-slip"
 
     mu: Annotated[tuple[Positive, ...], Field(min_length=1)]
     stiffness: Annotated[tuple[Stiffness, ...], Field(min_length=1)]

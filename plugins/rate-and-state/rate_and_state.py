@@ -37,6 +37,7 @@ class RateAndState(MemoryLaw):
     @article{rice1996, author = {Rice, J. R. and Ben-Zion, Y.}, title = {Slip complexity in earthquake fault models},
       journal = {Proceedings of the National Academy of Sciences}, volume = {93}, pages = {3811--3818}, year = {1996}}
     """
+    in_words: ClassVar[str] = "Rate and state"
 
     memory_kind: ClassVar[Literal["deflections", "scalars"]] = "scalars"
 

@@ -35,6 +35,7 @@ class Ambrosio(fl.SlidingLaw):
       = {Schiehlen, W. and Valášek, M.}, series = {NATO Science Series}, volume = {103}, publisher = {Springer},
       pages = {57--81}, year = {2003}}
     """
+    in_words: ClassVar[str] = "Ambrósio"
 
     mu: fl.Positive
     free_speed: Annotated[fl.NonNegative, fl.Dimension(length=1, time=-1)]

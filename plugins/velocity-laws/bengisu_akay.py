@@ -38,6 +38,7 @@ class BengisuAkay(fl.SlidingLaw):
       in multi-degree-of-freedom systems}, journal = {Journal of Sound and Vibration}, volume = {171}, number = {4},
       pages = {557--570}, year = {1994}}
     """
+    in_words: ClassVar[str] = "Bengisu-Akay"
 
     mu_kinetic: fl.NonNegative
     mu_static: fl.Positive

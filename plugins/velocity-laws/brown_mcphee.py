@@ -38,6 +38,7 @@ class BrownMcphee(fl.SlidingLaw):
       dynamics and control with physically meaningful parameters}, journal = {Journal of Computational and Nonlinear
       Dynamics}, volume = {11}, number = {5}, pages = {054502}, year = {2016}}
     """
+    in_words: ClassVar[str] = "Brown-McPhee"
 
     mu_kinetic: fl.NonNegative
     mu_static: fl.Positive

@@ -44,6 +44,7 @@ class Makkar(fl.SlidingLaw):
       IEEE/ASME International Conference on Advanced Intelligent Mechatronics}, address = {Monterey, CA}, pages =
       {600--605}, year = {2005}}
     """
+    in_words: ClassVar[str] = "Makkar et al."
 
     mu_kinetic: fl.Positive
     mu_excess: fl.NonNegative

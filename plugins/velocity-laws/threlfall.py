@@ -31,6 +31,7 @@ class Threlfall(fl.SlidingLaw):
       programs with particular reference to {DRAM} au programme {DRAM}}, journal = {Mechanism and Machine Theory},
       volume = {13}, number = {4}, pages = {475--483}, year = {1978}}
     """
+    in_words: ClassVar[str] = "Threlfall"
 
     mu: fl.Positive
     rise_speed: fl.Speed

@@ -15,7 +15,7 @@ LIMITS = {
     "curves": 845,
     "laws": 710,
     "methods": 8046,
-    "motion": 4592,
+    "motion": 4596,
     "report": 1435,
     "runner": 4132,
     "scene": 1854,

@@ -170,6 +170,8 @@ def _measure_bristle(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None
     work.unit[0] = math.sqrt(body.normal_load * abs(law.friction(0.0, size, 0.0)) / size)
 
 
+DECADES_SLOWER = 4
+"""Decades below the speed of the friction-free motion over which the size of a deflection is the largest."""
 LEAST_EFFECT, LEAST_OF_SCALARS = 1e-6, 1e-3
 """Smallest change of friction, as a share of it, that a number of its size in steady sliding is taken to
 cause; second, the same for a scalar, whose logarithm is shifted by as much as any other coordinate."""
@@ -202,8 +204,11 @@ def _effects(law: Any, body: BodyNumbers, work: Work, zero: Any, least: float) -
 
 def _measure_deflections(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:
     _effects(law, body, work, zero, LEAST_EFFECT)
+    slip = swing_of(body) + 0.0 * zero
     for k in range(count_of(law)):
         work.unit[k] = math.sqrt(body.normal_load * work.unit[k])
+        for decade in range(1, DECADES_SLOWER + 1):  # what quick slip leaves next to nothing of
+            work.size[k] = max(work.size[k], length(law.steady(0.1**decade * slip, k)))
 
 
 def _measure_scalars(law: Any, body: BodyNumbers, work: Work, zero: Any) -> None:

@@ -152,6 +152,15 @@ def test_the_law_that_foretells_best_is_told_first_and_a_simpler_one_that_does_a
     assert set(found.residuals["law"]) == {"Dahl", "Jenkins", "ElastoPlastic"}
 
 
+def test_a_misfit_in_a_few_rows_is_no_scatter() -> None:
+    law = fl.Dahl(mu=0.4, presliding_length=3.0)
+    free = {"mu": (0.1, 1.0), "presliding_length": (0.1, 100.0)}
+    found = fl.fit(curve_of(law, 1e-3, 1), [fl.Coulomb(mu=0.4), law], SCENE, free, starts=2)
+
+    assert found.best.model.words == "Dahl"
+    assert any(sentence.startswith("Coulomb fits worse") for sentence in found.sentences)
+
+
 def test_the_correlation_length_is_that_of_the_noise() -> None:
     assert correlation_length(np.random.default_rng(0).normal(size=4000)) < 1.5
     assert correlation_length(correlated(1.0, 0.9, 0)) == pytest.approx((1 + 0.9) / (1 - 0.9), rel=0.4)

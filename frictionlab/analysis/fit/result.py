@@ -411,6 +411,21 @@ class FittedLaws:
         return "\n".join(self.sentences)
 
 
+MOST_WORSE = 10.0
+"""Excess of a law's sum of squares over that of the best, in variances of a row (Burnham & Anderson, 2002)."""
+
+
+def _as_well(law: FittedLaw, best: FittedLaw) -> bool:
+    """Check that a law foretells blocks left out no worse than the best does, beyond scatter and noise.
+
+    Scatter between parts alone would not see a misfit that lies in one of them: what is worse is held against the
+    noise of as many rows as are independent, too.
+    """
+    more, error = law.left_out.apart(best.left_out)
+    independent = len(best.raw) / correlation_length(best.raw)
+    return more <= 2.0 * error and independent * more <= MOST_WORSE * best.left_out.rms**2
+
+
 def _which(fit: FittedLaws) -> list[str]:
     best, told = fit.best, []
     out = f"{with_error(best.left_out.rms, best.left_out.error)} on blocks left out"
@@ -418,9 +433,8 @@ def _which(fit: FittedLaws) -> list[str]:
     for each in sorted(fit.fitted, key=lambda each: each.left_out.rms):
         if each is best:
             continue
-        more, error = each.left_out.apart(best.left_out)
         fewer = len(each.model.free) < len(best.model.free)
-        if not more > 2.0 * error:
+        if _as_well(each, best):
             what = (
                 "it is simpler: the data do not ask for more" if fewer else "the data do not tell them apart"
             )

@@ -53,7 +53,7 @@ def varies(given: Mapping[str, Any]) -> bool:
 
 
 def scene_of(given: Mapping[str, Any]) -> Scene:
-    """Return the scene of a row, on a belt at rest."""
+    """Return the scene of a row, on a belt at rest and without a start."""
     tree: dict[str, Any] = {"belt_speed": 0.0}
     for name, value in given.items():
         path = name.split(".")
@@ -62,7 +62,7 @@ def scene_of(given: Mapping[str, Any]) -> Scene:
             for key in path[1:-1]:
                 held = held.setdefault(key, {})
             held[path[-1]] = told(value) if path[-1] == "waveform" else value
-    return Scene(**tree)
+    return Scene(**(tree | {"initial": None}))
 
 
 def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:

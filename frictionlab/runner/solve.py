@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Collection, Sequence, Sized
 from dataclasses import replace
@@ -31,6 +32,7 @@ from frictionlab.runner.part import (
 )
 from frictionlab.runner.pieces import Chunk
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.linear import velocity_scale
 from frictionlab.values.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
 from frictionlab.values.quantities import Floats
 
@@ -51,7 +53,7 @@ def answer(chunk: Chunk) -> list[Answered]:
     """Return the pieces into which refusals and failures divide a chunk. Raises BrokenPlugin."""
     places = list(range(len(chunk.scenes)))
     try:
-        reasons = chunk.method.refusals(chunk.scenes, chunk.law)
+        reasons = _negative(chunk) or chunk.method.refusals(chunk.scenes, chunk.law)
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
@@ -59,6 +61,19 @@ def answer(chunk: Chunk) -> list[Answered]:
     out = {place: reason for place, reason in enumerate(reasons) if reason is not None}
     pieces = [Answered(list(out), refused(list(out.values())))] if out else []
     return pieces + _solved(chunk, [place for place in places if place not in out])
+
+
+def _negative(chunk: Chunk) -> list[str | None]:
+    """Return why points are refused whose law has negative sliding friction there; nothing if none is."""
+    scale = velocity_scale(chunk.scenes.scene)
+    quickest = np.abs(chunk.scenes.belt_speeds) + (scale if scale < math.inf else 0.0)
+    speeds = [(speed, chunk.law.sliding_friction(speed)) for speed in quickest.tolist()]
+    if not any(friction < 0.0 for _, friction in speeds):
+        return []
+    what = (
+        "sliding_friction of the law is {:.3g} at slip speed {:.3g}: a coefficient of friction is at least 0"
+    )
+    return [what.format(friction, speed) if friction < 0.0 else None for speed, friction in speeds]
 
 
 def _solved(chunk: Chunk, places: list[int]) -> list[Answered]:

@@ -65,7 +65,9 @@ def forms(kind: type[FrictionLaw]) -> list[FrictionLaw]:
     """A law with each set of properties that kernels are compiled for, found by varying its parameters."""
     numbers = {name: field for name, field in kind.model_fields.items() if _may_be_a_number(field.default)}
     required = [name for name, field in kind.model_fields.items() if field.is_required()]
-    values: product[tuple[Any, ...]] = product(*[(_USUAL, (_USUAL,))] * len(required))  # lists, too
+    values: list[tuple[Any, ...]] = [*product(*[(_USUAL, (_USUAL,))] * len(required))]  # lists, too
+    rising = tuple(_USUAL + 0.25 * place for place in range(len(required)))  # where one must be above another
+    values += [rising, rising[::-1]]
     bases = [dict(zip(required, each, strict=True)) for each in values]
     single: list[dict[str, Any]] = [{name: value} for name in numbers for value in _OTHERS]
     more = [{}, *single, *(one | other for one, other in combinations(single, 2))]

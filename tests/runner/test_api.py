@@ -32,6 +32,7 @@ from frictionlab.runner.summary import summary
 from frictionlab.runner.table import inputs, records
 from frictionlab.study import registry
 from frictionlab.study.load import load_study, parse_study
+from frictionlab.testing import check_law
 from frictionlab.values.columns import ALWAYS, DEFAULT, RESULTS, TEXT, columns_of
 
 pytestmark = pytest.mark.usefixtures("fakes")
@@ -506,3 +507,35 @@ def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> No
     ]
     assert lines.count("words of models in full: frictionlab columns") == 1
     assert any(line.endswith(" 1, 2") for line in lines)
+
+
+def test_curves_whose_motions_start_somewhere_are_measured() -> None:
+    shaken = fl.BeltVibration(velocity_amplitude=10, frequency=1)
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, belt_vibration=shaken, initial=fl.Initial(x=0.0)
+    )
+
+    assert len(fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 8]).curves) == 1
+
+
+class Falling(fl.SlidingLaw):
+    """Friction that falls with the logarithm of speed, without end."""
+
+    mu: fl.Positive
+
+    def sliding_friction(self, speed: float) -> float:
+        """Return the coefficient at slip speed s >= 0."""
+        return self.mu - 0.2 * math.log(1.0 + speed)
+
+
+def test_a_coefficient_below_zero_is_refused_with_its_speed_and_seen_by_the_battery() -> None:
+    scene = fl.Scene(belt_speed=0.5, slip=fl.Slip(velocity_amplitude=1, frequency=1))
+
+    table = fl.curve(scene, Falling(mu=0.3), belt_speed=[0.5, 9.0])
+
+    assert list(table["status"]) == ["ok", "refused"]
+    assert table["reason"][1] == (
+        "sliding_friction of the law is -0.18 at slip speed 10: a coefficient of friction is at least 0"
+    )
+    outcome = check_law(Falling, on_failure="return", only=["answers"]).outcome("answers")
+    assert outcome.counterexample.startswith("sliding_friction must be at least 0")

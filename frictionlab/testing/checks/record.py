@@ -140,7 +140,9 @@ def answers(one: Given) -> None:
     """Every method answers with a finite number: a float on the line, a complex number in the plane."""
     law = one.law()
     v, memory = one.motion(law)
-    _number(one, float, law.sliding_friction(abs(v)), "sliding_friction")
+    sliding = law.sliding_friction(abs(v))
+    _number(one, float, sliding, "sliding_friction")
+    one.require(sliding >= 0.0, "sliding_friction must be at least 0", got=sliding)
     _numbers(one, law, v, memory)
     if not no_plane(law):
         _numbers(one, law, *one.motion(law, planar=True))

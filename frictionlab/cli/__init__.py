@@ -11,8 +11,10 @@ import time
 import traceback
 from collections.abc import Collection, Sequence
 from contextlib import suppress
+from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
+from typing import Any
 
 import click
 
@@ -143,6 +145,14 @@ class CommandGroup(click.Group):
         if cmd_name not in COMMANDS:
             return None
         return _command(cmd_name)
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        """Return the command that is called; a misspelt one is told with the one that was perhaps meant."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as problem:
+            meant = "".join(f" Did you mean '{name}'?" for name in get_close_matches(args[0], COMMANDS, 1))
+            raise click.UsageError(f"{problem.message}{meant}", ctx) from None
 
 
 @cache

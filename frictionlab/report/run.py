@@ -57,7 +57,7 @@ class Run(Results):
     study : Study
         Study that was solved; ``.to_yaml()`` writes it as a study file.
     readers : dict of str to callable
-        Functions that read or make each table; attributes of these names call them once.
+        Functions that read or make each table; a table is read when its attribute is first used.
     counts : dict of str to int
         Number of rows of each status.
     verdicts : tuple of Verdict
@@ -301,8 +301,7 @@ def run(
     out : str or path-like, optional
         Folder for results; they are kept in memory only if left out.
     overrides : list of str, default ()
-        Changes ``path=value`` as for ``--set``. A ``Study`` has them already: with one they are recorded
-        only.
+        Changes ``path=value`` as for ``--set``. Of a ``Study`` nothing is changed; they are only recorded.
     existing : {"reuse", "replace"}, default "reuse"
         Treatment of results in ``out``: "reuse" takes over finished points of the same study, "replace"
         replaces any results.

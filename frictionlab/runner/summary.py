@@ -44,6 +44,7 @@ def alike(sentences: Iterable[str]) -> str:
 
 
 MOST_REASONS = 10
+SEVERAL_STATES = "not_unique: keep: {attractors: 8} lists the states, scene.initial chooses one"
 WORDS_OF_MODELS = "words of models in full: frictionlab columns"
 CURVES_TOLD = 20
 """Largest number of curves that a summary lists, one line each."""
@@ -165,6 +166,8 @@ def _reasons(table: pd.DataFrame) -> list[str]:
         for rows in sorted(groups, key=len, reverse=True)
     ]
     more = [f"... and {len(lines) - MOST_REASONS} more reasons"] if len(lines) > MOST_REASONS else []
+    if (rest["status"] == "not_unique").any():
+        more.append(SEVERAL_STATES)
     return ["", *lines[:MOST_REASONS], *more] if lines else []
 
 

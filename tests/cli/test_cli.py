@@ -494,6 +494,13 @@ def test_a_check_tells_curves_points_models_refusals_and_time_and_keeps_nothing(
     assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
 
 
+def test_a_misspelt_command_is_told_with_the_one_meant(frictionlab: Any) -> None:
+    said = frictionlab("rnu", "study.yaml")
+
+    assert said.code == 2
+    assert "No such command 'rnu'. Did you mean 'run'?" in said.err
+
+
 def test_a_check_tells_laws_that_are_one(frictionlab: Any) -> None:
     dahl = {"kind": "dahl", "mu": 0.3, "presliding_length": 0.5}
     lugre = {"kind": "lugre", "mu_kinetic": 0.3, "presliding_length": 0.5}

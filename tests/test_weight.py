@@ -9,7 +9,7 @@ LIMITS = {
     "analysis": 2194,
     "bench": 2177,
     "beside the rooms": 87,
-    "charts": 1810,
+    "charts": 1741,
     "cli": 993,
     "compile": 1409,
     "curves": 845,

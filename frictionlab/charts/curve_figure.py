@@ -30,15 +30,11 @@ from frictionlab.charts.looks import (
     Looks,
     curve_entries,
     status_entries,
-    told_of,
 )
 from frictionlab.charts.marks import (
-    CurveEnd,
     OnsetMark,
-    draw_end_labels,
     draw_onsets,
     draw_speed_marks,
-    ends_fit,
     onset_entries,
     onsets_on,
 )
@@ -102,35 +98,15 @@ class CurveFigure:
         for column in range(len(self.columns)):
             scale_alike(drawn[column :: len(self.columns)], LIKE_RANGES)
         sheet.label_once(drawn)
-        self._name_curves(sheet, pictures, drawn)
+        self._name_curves(sheet)
         return sheet.figure
 
-    def _name_curves(
-        self, sheet: Sheet, pictures: Sequence[tuple[Panel, str]], drawn: Sequence[Axes]
-    ) -> None:
-        """At their ends where they fit in every picture, else in a legend, below which is all else."""
-        named, about = curve_entries(self.looks, self.columns), None
-        what = self.family.word(self.family.member) if self.family.member else None
-        ends = [self._ends(panel, column) for panel, column in pictures]
-        if named and all(ends_fit(*each, sheet.picture_width) for each in zip(drawn, ends, strict=True)):
-            for axes, found in zip(drawn, ends, strict=True):
-                draw_end_labels(axes, found)
-            named = (
-                [Line2D([], [], linestyle="none", label=f"at the end of each line: {what}")] if what else []
-            )
-        elif not any(entry.get_linestyle() == "None" for entry in named):  # which tell what is swept
-            about = what
+    def _name_curves(self, sheet: Sheet) -> None:
+        """A legend of the curves, below which is all else."""
+        named = curve_entries(self.looks, self.columns)
+        tells_what = any(entry.get_linestyle() == "None" for entry in named)  # what is swept
+        about = self.family.word(self.family.member) if self.family.member and not tells_what else None
         sheet.add_legend([*named, *self._entries()], about)
-
-    def _ends(self, panel: Panel, column: str) -> list[CurveEnd]:
-        """Return the ends of the curves of a picture."""
-        found = []
-        for curve in (each for each in self.looks.curves if each.panel == panel):
-            x, y = curve.column(self.family.abscissa), curve.column(column)
-            if (known := np.flatnonzero(np.isfinite(y))).size and np.isfinite(x).all():
-                name = told_of(self.looks, curve)
-                found.append(CurveEnd(x[known[-1]], y[known[-1]], name, self.looks.color(curve)))
-        return found
 
     def onsets_of(self, curve: CurveData) -> list[OnsetMark]:
         """Return the marks on the axis under a curve."""

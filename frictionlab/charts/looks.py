@@ -204,12 +204,6 @@ def _apart(looks: Looks, curves: Sequence[CurveData]) -> list[Line2D]:
     return entries
 
 
-def told_of(looks: Looks, curve: CurveData) -> str:
-    """Return what a curve is called at its end."""
-    methods = (curve.method, *curve.same) if looks.sizes[2] > 1 or curve.same else ()
-    return curve_name(looks, curve, methods)
-
-
 def curve_name(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
     """Return the names of what tells a curve from the others: law, methods, swept value."""
     told = _names(looks, curve, methods)

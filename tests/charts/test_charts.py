@@ -24,7 +24,6 @@ from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.figures import FIGURES, FigureData, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
-from frictionlab.charts.marks import moved_apart
 from frictionlab.charts.sheet import STYLE, Heading
 from frictionlab.charts.sweeps import is_logarithmic
 from frictionlab.study.figure_options import FigureOptions
@@ -466,24 +465,6 @@ def test_where_a_state_is_not_unique_other_quantities_have_a_mark(resonance: pd.
     ]
 
     assert [list(line.get_xdata()) for line in marks] == [[3.0]]
-
-
-def test_names_are_at_the_ends_of_curves_where_each_has_its_own(resonance: pd.DataFrame) -> None:
-    low, high = resonance.assign(law="low"), _other(resonance, "auto", 0.2).assign(law="high")
-
-    apart = _figure(_joined([low, high]))
-    assert apart.legends == []
-    assert names_of(apart) == ["low", "high"]
-    assert legend_of(_figure(_joined([low, high.assign(mean_friction=low["mean_friction"])]))) == [
-        "low",
-        "high",
-    ]
-
-
-def test_names_give_way_to_each_other_as_little_as_may_be() -> None:
-    heights = np.array([0.0, 50.0, 52.0, 100.0])
-
-    np.testing.assert_allclose(moved_apart(heights), [0.0, 46.5, 55.5, 100.0])
 
 
 def test_the_legend_tells_laws_and_values_apart_where_that_is_shorter(resonance: pd.DataFrame) -> None:

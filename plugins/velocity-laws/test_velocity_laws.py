@@ -242,3 +242,26 @@ def test_its_study_keeps_its_promises():
 
     assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
     assert set(done.table["status"]) == {"ok"}
+
+
+@deep("kernels of its own")
+def test_a_chaotic_mean_of_a_law_without_friction_at_rest_is_told():
+    scene = fl.Scene(
+        damping_ratio=0.0324,
+        normal_load=0.3042,
+        belt_speed=0.00296,
+        drive=fl.Drive(amplitude=0.0559, frequency=0.618),
+    )
+    law = Makkar(
+        mu_kinetic=0.52,
+        mu_excess=0.156,
+        excess_rise=1145,
+        excess_fall=114.5,
+        kinetic_rise=1145,
+        viscosity=0.4657,
+    )
+
+    state = fl.steady_state(scene, law)
+
+    assert state.status == "ok"
+    assert state.mean_friction == pytest.approx(0.3932, abs=2e-3)  # midpoint steps over 1000 periods

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.theory.rest import friction_at_rest
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import size_of_friction
 from frictionlab.values.quantities import Floats
 
 BLOCKS = 8
@@ -63,9 +64,12 @@ class LongMean(NamedTuple):
         return f"the motion does not repeat ({named}): its mean over {window:.0f} {of}"
 
 
-def is_earned(error: float, law: FrictionLaw, tolerance: float) -> bool:
-    """Check that the error of a long mean is within the tolerance or a thousandth of friction at rest."""
-    return error <= max(tolerance, EARNED * friction_at_rest(law))
+def is_earned(error: float, scene: Scene, law: FrictionLaw, tolerance: float) -> bool:
+    """Check that the error of a long mean is within the tolerance or a thousandth of friction at rest.
+
+    Of a law that has none at rest it is that of quick slip.
+    """
+    return error <= max(tolerance, EARNED * size_of_friction(scene, law))
 
 
 def too_wide(mean: float, error: float) -> str:

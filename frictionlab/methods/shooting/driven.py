@@ -231,7 +231,7 @@ class SteadyStates(Ledger):
             if periods > MOST and self.status[i] != "ok" and can_hold(scene, law):
                 self.remark(i, CARRIED.format(periods * self.problem.common))
             statistical = self.status[i] == "ok" and self.error_kind[i] == STATISTICAL
-            if statistical and not is_earned(error, law, tolerance):
+            if statistical and not is_earned(error, scene, law, tolerance):
                 said = f"{self.reason[i]}; {too_wide(self.mean[i].real, error)}"
                 self.clear(i)
                 self.reason[i] = said

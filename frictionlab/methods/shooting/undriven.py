@@ -395,7 +395,7 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
             ledger.fail(i, motion)
             continue
         long, said = motion.long, motion.long.sentence(motion.turns, FREE) if motion.long else ""
-        if long is not None and not is_earned(motion.error, law, tolerance):
+        if long is not None and not is_earned(motion.error, scene, law, tolerance):
             ledger.fail(i, f"{said}; {too_wide(motion.mean, motion.error)}")
             continue
         found[i] = undriven, motion

@@ -58,6 +58,8 @@ _SUMS = "duration", "misfit_load", "misfit_speed"
 SUMMED = np.array(["energy" in name or "reversals" in name or name in _SUMS for name in READ])
 """Mask of the columns of ``READ`` that are sums and counts over the whole record; all others are means,
 phases or extremes."""
+LEAST_SLIP = 1e-9
+"""Slip velocity, over the largest, that has no sign: events are located no better."""
 ALIKE = 1e-5
 """Largest difference, over its size, of a column of orbits that agree."""
 
@@ -272,10 +274,11 @@ def _open_ends(x: complex, v: complex, mass: Mass) -> float:
 
 @inner
 def _drop_rounding(part: Any, v: Any) -> None:
-    """Set slip velocities to zero that are rounding of the velocity they are a difference of."""
+    """Set slip velocities to zero that are rounding: of the velocity they are a difference of, or of an event."""
+    least = LEAST_SLIP * np.abs(part).max()
     for panel in range(part.shape[0]):
         for node in range(part.shape[1]):
-            if abs(part[panel, node]) <= SLIP_ROUNDING * abs(v[panel, node].real):
+            if abs(part[panel, node]) <= max(least, SLIP_ROUNDING * abs(v[panel, node].real)):
                 part[panel, node] = 0.0
 
 

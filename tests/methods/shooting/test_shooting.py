@@ -11,6 +11,7 @@ from answered import with_columns
 from collocation import REFERENCE
 from profiles import DEEP, some
 
+import frictionlab as fl
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
@@ -281,3 +282,19 @@ def test_corner_cases_are_answered_or_fail_with_a_reason(name):
     else:
         assert answers.reason[0]
         assert np.isnan(columns["mean_friction"])
+
+
+@pytest.mark.parametrize("belt_speed", [0.005, 0.0077, 0.012])
+def test_slip_that_starts_and_stops_on_one_side_does_not_reverse(belt_speed):
+    scene = fl.Scene(
+        damping_ratio=0.08,
+        normal_load=1,
+        belt_speed=belt_speed,
+        drive=fl.Drive(amplitude=0.21, offset=0.34, frequency=1.7),
+        normal_load_variation=fl.NormalLoadVariation(amplitude=0.14, phase=45, frequency_ratio=1),
+    )
+
+    state = fl.steady_state(scene, fl.Coulomb(mu=0.47, mu_static=0.536))
+
+    assert (state.status, state.reversals) == ("ok", 0)
+    assert 0.1 < state.stick_fraction < 1

@@ -59,7 +59,7 @@ SUMMED = np.array(["energy" in name or "reversals" in name or name in _SUMS for 
 """Mask of the columns of ``READ`` that are sums and counts over the whole record; all others are means,
 phases or extremes."""
 LEAST_SLIP = 1e-9
-"""Slip velocity, over the largest, that has no sign: events are located no better."""
+"""Slip velocity, over the largest, that has no sign beside stick: events are located no better."""
 ALIKE = 1e-5
 """Largest difference, over its size, of a column of orbits that agree."""
 
@@ -238,7 +238,7 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     # Reversals of slip are not counted in stick; a slip that is rounding of the velocity has no sign. The friction
     # force changes its sign in stick, too, where the slip is zero.
     slip_along = slips.real
-    _drop_rounding(slip_along, v)
+    _drop_rounding(slip_along, v, stick)
     return (
         mean_friction(sums.friction.real, period),
         sums.position.real / period,
@@ -273,12 +273,14 @@ def _open_ends(x: complex, v: complex, mass: Mass) -> float:
 
 
 @inner
-def _drop_rounding(part: Any, v: Any) -> None:
-    """Set slip velocities to zero that are rounding: of the velocity they are a difference of, or of an event."""
-    least = LEAST_SLIP * np.abs(part).max()
-    for panel in range(part.shape[0]):
+def _drop_rounding(part: Any, v: Any, stick: Any) -> None:
+    """Set slip velocities to zero that are rounding of a velocity or, beside stick, of an event."""
+    least, count = LEAST_SLIP * np.abs(part).max(), part.shape[0]
+    for panel in range(count):
+        beside = stick[panel - 1] or stick[(panel + 1) % count]
         for node in range(part.shape[1]):
-            if abs(part[panel, node]) <= max(least, SLIP_ROUNDING * abs(v[panel, node].real)):
+            rounding = max(least if beside else 0.0, SLIP_ROUNDING * abs(v[panel, node].real))
+            if abs(part[panel, node]) <= rounding:
                 part[panel, node] = 0.0
 
 

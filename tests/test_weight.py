@@ -6,7 +6,7 @@ from profiles import deep
 from weight import code_lines, files_of_package, lines_of_rooms
 
 LIMITS = {
-    "analysis": 2194,
+    "analysis": 2196,
     "bench": 2177,
     "beside the rooms": 87,
     "charts": 1741,
@@ -20,7 +20,7 @@ LIMITS = {
     "runner": 4147,
     "scene": 1854,
     "study": 2719,
-    "testing": 1482,
+    "testing": 1484,
     "theory": 844,
     "tools": 19,
     "values": 1427,

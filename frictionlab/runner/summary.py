@@ -61,6 +61,7 @@ def summary(run: Results) -> str:
         ["", *_curve_lines(table)],
         _model_lines(table),
         _reasons(table),
+        [SEVERAL_STATES] * (run.counts.get("not_unique", 0) > 0 and run.study.keep.attractors is None),
         verdict_lines(run.verdicts),
         [f"table in {run.table_file}"] if run.table_file else [],
     ]
@@ -166,8 +167,6 @@ def _reasons(table: pd.DataFrame) -> list[str]:
         for rows in sorted(groups, key=len, reverse=True)
     ]
     more = [f"... and {len(lines) - MOST_REASONS} more reasons"] if len(lines) > MOST_REASONS else []
-    if (rest["status"] == "not_unique").any():
-        more.append(SEVERAL_STATES)
     return ["", *lines[:MOST_REASONS], *more] if lines else []
 
 

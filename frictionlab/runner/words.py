@@ -38,6 +38,7 @@ TOLD: dict[str, tuple[str, str]] = {
     "between belt speeds (NUMBER) and": ("velocity", "m/s"),
     "between belt speeds .* and (NUMBER)": ("velocity", "m/s"),
     "; none at (NUMBER)": ("velocity", "m/s"),
+    "at slip speed (NUMBER)": ("velocity", "m/s"),
 }
 """Numbers with a dimension in sentences: their scale and SI unit."""
 _PATTERNS = {re.compile(words.replace("NUMBER", _NUMBER)): scale for words, scale in TOLD.items()}

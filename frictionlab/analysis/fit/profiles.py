@@ -63,10 +63,11 @@ def profile(
     high = _end(grid, rises, ordered, at, 1, beside, rise)
     inside = rises <= 1.0
     stretches = int(inside[0]) + int((inside[1:] & ~inside[:-1]).sum())
-    far = any(rise(other) <= 1.0 and not low <= other.shares[number] <= high for other in others)
+    as_good = [other.shares[number] for other in others if rise(other) <= 1.0]
     form: ProfileForm = "bounded"
-    if stretches > 1 or far:
-        form = "multimodal"
+    if stretches > 1 or any(not low <= share <= high for share in as_good):
+        form = "multimodal"  # the interval holds all that fits as well
+        low, high = (end([own, *grid[inside], *as_good]) for end, own in ((min, low), (max, high)))
     elif inside.all():
         form = "flat"
     elif inside[0] or inside[-1]:

@@ -499,7 +499,8 @@ def _what_to_know(fit: FittedLaws) -> list[str]:
             other = each.found.others[0]
             at = ", ".join(f"{name} = {x:.4g}" for name, x in each.model.values(other.shares).items())
             worse = np.sqrt(other.cost / each.found.best.cost) if each.found.best.cost else np.inf
-            told.append(f"{several}another minimum: {at}, rms {worse:.3g} times as large")
+            larger = f"{worse:.3g} times as large" if worse >= 1.005 else "as large"
+            told.append(f"{several}another minimum: {at}, rms {larger}")
         if each.found.agreeing < 2:
             told.append(
                 f"{label}: only {each.found.agreeing} of {each.found.starts} starts found this minimum"

@@ -142,7 +142,9 @@ def answers(one: Given) -> None:
     v, memory = one.motion(law)
     sliding = law.sliding_friction(abs(v))
     _number(one, float, sliding, "sliding_friction")
-    one.require(sliding >= 0.0, "sliding_friction must be at least 0", got=sliding)
+    one.require(
+        sliding >= 0.0, "sliding_friction must be at least 0: end its fall, as by max(0.0, ...)", got=sliding
+    )
     _numbers(one, law, v, memory)
     if not no_plane(law):
         _numbers(one, law, *one.motion(law, planar=True))
